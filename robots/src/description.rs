@@ -1,5 +1,6 @@
 //! A robot as its YAML file describes it, checked, in SI units.
 
+use crate::controller::Controller;
 use crate::effect::physics::Row;
 use crate::effect::{Convention, Effect, JointKind};
 
@@ -47,6 +48,8 @@ pub struct Description {
     pub links: Vec<Link>,
     /// What is beyond the table and the joints' compliance.
     pub effects: Vec<Effect>,
+    /// How the robot's controller sees it.
+    pub controller: Option<Controller>,
 }
 
 /// One row of the DH table with the joint it belongs to.

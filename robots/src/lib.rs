@@ -16,6 +16,8 @@ mod bare;
 #[cfg(feature = "read")]
 pub mod catalogue;
 #[cfg(feature = "read")]
+pub mod controller;
+#[cfg(feature = "read")]
 pub mod description;
 #[cfg(feature = "read")]
 pub mod diagnostic;
@@ -49,6 +51,8 @@ pub mod words;
 #[cfg(feature = "read")]
 mod write;
 
+#[cfg(feature = "read")]
+pub use controller::{Controller, Pendant};
 #[cfg(feature = "read")]
 pub use description::{Description, Joint, Link, Part, Placement};
 #[cfg(feature = "read")]

@@ -1,6 +1,7 @@
 //! Reading a description: every rule of the schema, every problem of a file at
 //! once.
 
+mod controller;
 mod couplings;
 mod effects;
 mod name;
@@ -58,14 +59,20 @@ impl Description {
 }
 
 /// The fields of a description.
-pub(crate) const ROBOT: [&str; 9] =
-    ["name", "description", "source", "convention", "base", "joints", "tool", "links", "effects"];
+pub(crate) const ROBOT: [&str; 10] =
+    ["name", "description", "source", "convention", "base", "joints", "tool", "links", "effects", "controller"];
 
 /// Those of a joint.
 pub(crate) const JOINT: [&str; 7] = ["type", "theta", "d", "a", "alpha", "limits", "compliance"];
 
 /// Those of a link.
 pub(crate) const LINK: [&str; 2] = ["mass", "center_of_mass"];
+
+/// Those of a controller.
+pub(crate) const CONTROLLER: [&str; 4] = ["joints", "world", "flange", "nominal"];
+
+/// Those of a joint as its pendant shows it.
+pub(crate) const PENDANT: [&str; 3] = ["sign", "offset", "add"];
 
 /// Those of a placement.
 pub(crate) const PLACEMENT: [&str; 2] = ["xyz", "rpy"];
@@ -102,6 +109,8 @@ fn description(root: &Node) -> Option<Description> {
     let links = optional(&map, "links", |node| links(node, count));
     let arm = effects::Arm { convention, joints: joints.as_deref(), links: links.as_deref(), count };
     let effects = optional(&map, "effects", |node| effects::effects(node, &arm));
+    let controller =
+        map.get("controller").map_or(Some(None), |node| controller::controller(&node, joints.as_deref()).map(Some));
     Some(Description {
         name: name?,
         description: summary?,
@@ -112,6 +121,7 @@ fn description(root: &Node) -> Option<Description> {
         tool: tool?,
         links: links?,
         effects: effects?,
+        controller: controller?,
     })
 }
 

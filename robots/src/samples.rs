@@ -25,6 +25,7 @@ pub fn arm(convention: Convention, rows: &[[f64; 5]]) -> Description {
         tool: Placement::default(),
         links: Vec::new(),
         effects: Vec::new(),
+        controller: None,
     }
 }
 

@@ -12,7 +12,7 @@ use crate::description::MOST_JOINTS;
 use crate::dimension::Dimension;
 use crate::document::Node;
 use crate::effect::Convention;
-use crate::read::{JOINT, LINK, PLACEMENT, ROBOT};
+use crate::read::{CONTROLLER, JOINT, LINK, PENDANT, PLACEMENT, ROBOT};
 use crate::units::UNITS;
 
 /// A document as an editor reads it, to hold it against a schema; `null` in place of what is no value of
@@ -174,6 +174,7 @@ pub fn robot() -> Value {
             "description": "The body that moves with each joint, `{}` where nothing is known",
         }),
         "effects" => described(self::effects(), "What measurements added to the compliance of the joints"),
+        "controller" => described(controller(), "How the controller sees the robot"),
         _ => json!({}),
     });
     document("A robot: its geometry and how it gives way", schema)
@@ -238,5 +239,43 @@ fn link() -> Value {
             list(quantity(Dimension::Length, Sign::Any, "A coordinate"), 3),
             "The centre of mass in the frame of the joint's row; left out, its origin",
         ),
+    })
+}
+
+fn controller() -> Value {
+    object(&CONTROLLER, &[], |field| match field {
+        "joints" => json!({
+            "type": "array",
+            "minItems": 1,
+            "maxItems": MOST_JOINTS,
+            "items": pendant(),
+            "description": "How joint coordinates follow from the pendant's, `{}` where they are the same",
+        }),
+        "world" => described(placement(), "The controller's world in the base frame; left out, it is the base frame"),
+        "flange" => described(placement(), "The controller's flange in the flange frame; left out, it is that frame"),
+        _ => text("The description that the controller solves with; left out, this one without effects"),
+    })
+}
+
+/// `q = offset + sign (t + sum of factor t_j)`.
+fn pendant() -> Value {
+    object(&PENDANT, &[], |field| match field {
+        "sign" => {
+            default(json!({ "enum": [1, -1], "description": "-1 where the two count in opposite directions" }), 1)
+        }
+        "offset" => default(
+            either(
+                quantity(Dimension::Angle, Sign::Any, "The coordinate where the pendant shows 0"),
+                quantity(Dimension::Length, Sign::Any, "The coordinate where the pendant shows 0"),
+            ),
+            0,
+        ),
+        _ => json!({
+            "type": "object",
+            "minProperties": 1,
+            "patternProperties": { "^t[1-7]$": { "type": "number" } },
+            "additionalProperties": false,
+            "description": "What the pendant's coordinates of joints before this one add, each with its factor",
+        }),
     })
 }

@@ -2,6 +2,7 @@
 //! out, and not a bit lost.
 
 use crate::angle::snapped;
+use crate::controller::{Controller, Pendant};
 use crate::description::{Description, Joint, Link, Placement};
 use crate::effect::{Effect, JointKind, Place};
 use crate::quantity::{self, Dimension, number};
@@ -30,8 +31,39 @@ impl Description {
         yaml += &placement("tool", &self.tool);
         yaml += &list("links", self.links.iter().map(link));
         yaml += &list("effects", self.effects.iter().map(effect));
+        if let Some(controller) = &self.controller {
+            yaml += &self.controller(controller);
+        }
         yaml
     }
+
+    fn controller(&self, controller: &Controller) -> String {
+        let kinds = self.joints.iter().map(|joint| joint.kind);
+        let joints = kinds.zip(&controller.joints).map(|(kind, joint)| pendant(joint, kind));
+        let mut parts = list("joints", joints);
+        parts += &placement("world", &controller.world);
+        parts += &placement("flange", &controller.flange);
+        if let Some(nominal) = &controller.nominal {
+            writeln!(parts, "nominal: {}", scalar(nominal, &[PLAIN])).expect("a string takes any text");
+        }
+        parts.lines().fold("controller:\n".to_owned(), |text, line| text + "  " + line + "\n")
+    }
+}
+
+fn pendant(joint: &Pendant, kind: JointKind) -> String {
+    let mut fields = Vec::new();
+    if joint.reversed {
+        fields.push(("sign", "-1".to_owned()));
+    }
+    if joint.offset != 0.0 {
+        let written = if kind == JointKind::Revolute { angle(joint.offset) } else { length(joint.offset) };
+        fields.push(("offset", written));
+    }
+    let add: Vec<String> = joint.add.iter().map(|(joint, factor)| format!("t{joint}: {}", number(*factor))).collect();
+    if !add.is_empty() {
+        fields.push(("add", format!("{{{}}}", add.join(", "))));
+    }
+    flow_map(&fields)
 }
 
 fn list(field: &str, items: impl ExactSizeIterator<Item = String>) -> String {

@@ -203,6 +203,7 @@ impl Random {
             tool: self.placement(),
             links,
             effects,
+            controller: None,
         };
         let points: Vec<usize> = (1..robot.joints.len()).filter(|&link| !robot.is_beam(link)).collect();
         robot.effects.retain(|effect| !matches!(effect.place(), Place::Link(link) if points.contains(&link)));

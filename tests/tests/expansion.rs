@@ -58,6 +58,7 @@ fn arm(rows: &[[f64; 4]]) -> Description {
         tool: Placement::default(),
         links: Vec::new(),
         effects: Vec::new(),
+        controller: None,
     }
 }
 

@@ -169,6 +169,7 @@ fn upright_robot() -> impl Strategy<Value = Description> {
             tool,
             links: Vec::new(),
             effects,
+            controller: None,
         })
         .prop_map(|mut robot| {
             let points: Vec<usize> = (1..robot.joints.len()).filter(|&link| !robot.is_beam(link)).collect();

@@ -27,6 +27,8 @@ pub struct Chain {
     pub bodies: Vec<(f64, Vector3<f64>)>,
     /// What is left out of it.
     pub warnings: Vec<String>,
+    /// Its joints in the tree, fixed ones too, from the base to the tip.
+    pub(super) path: Vec<usize>,
 }
 
 /// A joint of a [`Chain`].
@@ -130,6 +132,7 @@ impl Tree {
             end: frame,
             bodies,
             warnings,
+            path,
         })
     }
 

@@ -2,10 +2,15 @@
 //!
 //! [`Tree`] is what the file says, [`Tree::chain`] the serial chain between two
 //! of its links, and [`Chain::description`] that chain as a standard
-//! Denavit-Hartenberg table with base and tool.
+//! Denavit-Hartenberg table with base and tool. [`Tree::export`] is the way back: the file with
+//! the kinematics of a description.
 
 mod chain;
+mod export;
+#[cfg(test)]
+mod export_tests;
 mod motion;
+mod placing;
 mod read;
 mod spelling;
 mod table;
@@ -20,6 +25,7 @@ use nalgebra::{Isometry3, Unit, Vector3};
 use crate::JointKind;
 use crate::text::Lines;
 pub use chain::Chain;
+pub use export::{Export, Moved, is_said_by_origins};
 
 /// The links and joints of a URDF file.
 #[derive(Clone, Debug)]
@@ -34,6 +40,8 @@ pub struct Tree {
     pub warnings: Vec<String>,
     file: String,
     lines: Lines<String>,
+    /// Whether the file begins with a byte order mark, which is no part of the lines.
+    is_marked: bool,
     hangs: Hangs,
 }
 

@@ -45,6 +45,7 @@ impl Tree {
     /// What is wrong with it, each problem at its place; more text than
     /// [`MOST_OF_URDF`], elements that are nested too deep.
     pub fn parse(file: &str, text: &str) -> Result<Self, Diagnostics> {
+        let whole = text;
         let text = without_byte_order_mark(text);
         if text.len() > MOST_OF_URDF {
             let (line, message) = (Line { number: 1, text: "" }, format!("this text is {}", larger(MOST_OF_URDF)));
@@ -83,7 +84,7 @@ impl Tree {
         let (problems, warnings) = (reader.problems, reader.warnings);
         match Diagnostics::new(problems) {
             Some(problems) => Err(problems),
-            None => Ok(Self { warnings, lines, ..tree }),
+            None => Ok(Self { warnings, lines, is_marked: text.len() < whole.len(), ..tree }),
         }
     }
 
@@ -229,6 +230,7 @@ impl Reader<'_> {
             warnings: Vec::new(),
             file: self.file.to_owned(),
             lines: Lines::new(String::new()),
+            is_marked: false,
             hangs,
         }
     }
@@ -441,7 +443,7 @@ const MOST_DECIMALS: usize = 22;
 
 /// The multiple of 90 degrees that a number of at least two decimals is, when
 /// that is rounded or, as is common too, truncated to as many.
-fn unrounded(value: f64, text: &str) -> Option<f64> {
+pub(super) fn unrounded(value: f64, text: &str) -> Option<f64> {
     let (_, decimals) = text.split_once('.')?;
     // No number is written with more than its digits.
     let counts = (2..=MOST_DECIMALS).contains(&decimals.len());
@@ -456,7 +458,7 @@ fn unrounded(value: f64, text: &str) -> Option<f64> {
 }
 
 /// `Rz(yaw) Ry(pitch) Rx(roll)`, exact at the multiples of 90 degrees.
-fn exact_turn(roll: f64, pitch: f64, yaw: f64) -> nalgebra::Matrix3<f64> {
+pub(super) fn exact_turn(roll: f64, pitch: f64, yaw: f64) -> nalgebra::Matrix3<f64> {
     let sin_cos =
         |angle: f64| crate::angle::quarter_turns(angle).map_or_else(|| angle.sin_cos(), crate::angle::sin_cos_of_turns);
     let ((sr, cr), (sp, cp), (sy, cy)) = (sin_cos(roll), sin_cos(pitch), sin_cos(yaw));

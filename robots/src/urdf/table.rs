@@ -90,6 +90,7 @@ impl Chain {
             tool: placement(&(current.isometry().inverse() * tip)),
             links,
             effects: Vec::new(),
+            controller: None,
         }
     }
 }

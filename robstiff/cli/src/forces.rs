@@ -1,5 +1,7 @@
 //! `robstiff forces`: what a cut pushes the tool with.
 
+mod fit;
+
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
@@ -16,8 +18,17 @@ use crate::{input, json};
 #[derive(clap::Args)]
 pub struct Arguments {
     /// The cut: tool, material, engagement and feed, or measured forces (robstiff/docs/commands/forces.md)
-    #[arg(value_name = "CUT.yaml")]
-    cut: PathBuf,
+    #[arg(value_name = "CUT.yaml", required_unless_present = "fit", conflicts_with = "fit")]
+    cut: Option<PathBuf>,
+    /// Fit cutting coefficients to recorded forces: lists of records with the cut of each
+    #[arg(long, value_name = "RECORDS.yaml", num_args = 1.., conflicts_with_all = ["csv", "samples"])]
+    fit: Vec<PathBuf>,
+    /// Fit to the force over the revolution, not to the mean force alone
+    #[arg(long, requires = "fit")]
+    revolution: bool,
+    /// Where a cut with the fitted coefficients is written
+    #[arg(long, value_name = "CUT.yaml", requires = "fit")]
+    out: Option<PathBuf>,
     /// How many angles of a revolution are looked at
     #[arg(long, value_name = "COUNT", default_value_t = 360, allow_hyphen_values = true, value_parser = input::whole::<u32>(4, 1_000_000))]
     samples: u32,
@@ -41,7 +52,15 @@ fn axes(forces: &Forces) -> [&'static str; 3] {
 
 /// Prints forces.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let file = input::cut(&arguments.cut)?;
+    let Some(cut) = &arguments.cut else {
+        let (out, json) = (arguments.out.as_deref(), arguments.json.as_deref());
+        return fit::run(&arguments.fit, arguments.revolution, out, json);
+    };
+    // Clap asks for nothing that conflicts with what is given.
+    if arguments.out.is_some() || arguments.revolution {
+        return Err(Failure::Usage("--out and --revolution go with --fit".into()));
+    }
+    let file = input::cut(cut)?;
     let count = arguments.samples as usize;
     let (mean, revolution) = match &file.forces {
         Forces::Model(cut) => (cut.mean_force(), Some(cut.revolution(count))),
@@ -49,12 +68,12 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     };
     let looked_at = looked_at(&file.forces, revolution.as_ref());
     let mut files = Files::default();
-    protect(&mut files, &arguments.cut, &file);
+    protect(&mut files, cut, &file);
     if let Some(path) = &arguments.csv {
         let Some(revolution) = &revolution else {
             return Err(Failure::new(format_args!(
                 "{}: {}, so nobody can tell what a revolution is",
-                arguments.cut.display(),
+                cut.display(),
                 lacks(&file.forces)
             )));
         };

@@ -9,6 +9,7 @@ use robstiff_robots::quantity::{self, Dimension};
 use robstiff_robots::{Description, Joint, JointKind, catalogue};
 
 mod options;
+mod program;
 
 use crate::failure::Failure;
 use crate::{output, text};
@@ -17,6 +18,7 @@ pub use options::{
     Force, above_zero, all_with_unit, axis, axis_name, force, length, margin, positive, seed, three_with_unit,
     tool_axis, whole, with_unit,
 };
+pub use program::ProgramArguments;
 
 /// Reads a robot's description, and says what is doubtful in it, with its file's name: a file, or where there is
 /// none of that name, a robot of the catalogue. A folder with its measurements may have its name.

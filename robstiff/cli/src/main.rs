@@ -1,8 +1,10 @@
 //! The command `robstiff`: what a robot's description says about its
 //! stiffness, and what measurements say about the description.
 
+mod agreement;
 mod effect;
 mod emit;
+mod export;
 mod failure;
 mod forces;
 mod identify;
@@ -52,11 +54,12 @@ enum Command {
     Simulate(simulate::Arguments),
     Forces(forces::Arguments),
     Stability(stability::Arguments),
-    Path(path::Arguments),
+    Path(Box<path::Arguments>),
     Import(import::Arguments),
+    Export(export::Arguments),
     View(scene::Arguments),
     Map(map::Arguments),
-    Online(online::Arguments),
+    Online(Box<online::Arguments>),
     Schema(schema::Arguments),
     Completions(shell::Completions),
     Man(shell::Manual),
@@ -77,6 +80,7 @@ impl Command {
             Self::Stability(arguments) => stability::run(arguments),
             Self::Path(arguments) => path::run(arguments),
             Self::Import(arguments) => import::run(arguments),
+            Self::Export(arguments) => export::run(arguments),
             Self::View(arguments) => scene::run(arguments),
             Self::Map(arguments) => map::run(arguments),
             Self::Online(arguments) => online::run(arguments),

@@ -1,11 +1,13 @@
 //! Machining with a robot arm that yields.
 //!
 //! - [`inverse`], [`path`]: the joint coordinates of a pose of the tool, and of a tool path;
+//! - [`nc`]: programs of machine tools, G-code and APT, move by move;
 //! - [`milling`], [`stability`]: the force of an end mill, and the depth of cut at which the arm
 //!   chatters, by direction of feed and spindle speed;
 //! - [`deviation`], [`compensation`]: how far a cut pushes the tool off a path, and the path that
 //!   makes up for it;
 //! - [`online`]: correcting the joint targets while cutting;
+//! - [`program`]: programs of KUKA, ABB and FANUC controllers, written, read, and changed in place;
 //! - [`map`]: stiffness and deviation over joint space, planes and boxes, and where a workpiece
 //!   is best put.
 
@@ -15,6 +17,8 @@ mod golden;
 pub mod inverse;
 pub mod map;
 pub mod milling;
+pub mod nc;
 pub mod online;
 pub mod path;
+pub mod program;
 pub mod stability;

@@ -53,6 +53,7 @@ fn description(name: &str, description: &str, source: &str, joints: Vec<Joint>) 
         tool: Placement { xyz: [0.0, 0.0, 0.12], rpy: [0.0; 3] },
         links: Vec::new(),
         effects: Vec::new(),
+        controller: None,
     }
 }
 

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use robstiff::nalgebra::{Matrix3, SVector, Unit, Vector3, Vector6};
 use robstiff::{Robot, with_robot};
-use robstiff_machining::deviation::{Deviation, ForceTable, Surface, load_of_cut};
+use robstiff_machining::deviation::{Deviation, ForceTable, Surface};
 use robstiff_machining::milling::{CutFile, CutFrame, ForceFrame, Forces};
 use robstiff_machining::online::{HeldBack, Instant, LeftOfSine, Timeline, left_of_sine, simulate_along};
 use robstiff_machining::path::ToolPath;
@@ -15,7 +15,7 @@ use super::{Arguments, FREQUENCIES, Frequencies, Variant, bound};
 use crate::failure::Failure;
 use crate::input::Force;
 use crate::output::{self, Files};
-use crate::path::cutting::complain_of_feed;
+use crate::path::cutting::{complain_of_feed, from_spindle, load_along};
 use crate::text::significant;
 use crate::{forces, input};
 
@@ -121,13 +121,19 @@ impl LoadRequest {
                 }
             };
             let name = format!("{} under {by}", path.display());
-            let path = ToolPath::read(path, robot, load.tool_axis)?;
+            let mut path = ToolPath::open(path, robot, load.tool_axis, &arguments.program.options(path)?)?;
+            if let Some(place) = &load.place {
+                if path.gives_joints() {
+                    let message = format!("--place: {} gives joint coordinates, which stand in no frame", path.file);
+                    return Err(Failure::Usage(message));
+                }
+                path = path.placed(place);
+            }
             if let Source::Cut(file) = &source {
-                complain_of_feed(file, &by, &path);
+                complain_of_feed(file, &by, &path, false);
             }
             path.warnings.iter().for_each(|warning| output::complain(format_args!("warning: {warning}")));
-            // The sign of the tool's axis says how the file writes it.
-            let axis = load.spindle_axis.unwrap_or(Unit::new_unchecked(load.tool_axis.abs()));
+            let axis = load.spindle_axis.unwrap_or(from_spindle(load.tool_axis, path.is_program));
             return Ok(Self::Path { path: Box::new(path), source, axis, feed: load.feed, name });
         }
         let q = load.at.pose(robot)?;
@@ -220,7 +226,7 @@ fn of_path<const N: usize>(
     let solved = path.solve(robot, None)?;
     let load = match source {
         Source::Table(table) => table.load(&solved, ForceFrame::Base, axis, Surface::Side)?,
-        Source::Cut(file) => load_of_cut(&file.forces, &solved, axis, Surface::Side),
+        Source::Cut(file) => load_along(&file.forces, path, &solved, axis, Surface::Side),
     };
     let speed = match source {
         Source::Cut(CutFile { forces: Forces::Model(cut), .. }) => feed.or(cut.feed_speed()),

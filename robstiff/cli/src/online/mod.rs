@@ -7,7 +7,7 @@ mod reach;
 
 use std::path::PathBuf;
 
-use robstiff::nalgebra::{Unit, Vector3};
+use robstiff::nalgebra::{Matrix4, Unit, Vector3};
 use robstiff::{Generic, with_robot};
 use robstiff_machining::online::{Controller, Limits, Sensing, Servo};
 use robstiff_robots::Description;
@@ -38,12 +38,14 @@ pub struct Arguments {
     #[arg(value_name = "ROBOT.yaml")]
     robot: PathBuf,
     /// The tool path (robstiff/docs/commands/path.md); without it, a pose
-    #[arg(value_name = "PATH.csv", conflicts_with = "at")]
+    #[arg(value_name = "PATH", conflicts_with = "at")]
     path: Option<PathBuf>,
     #[command(flatten)]
     load: LoadArguments,
     #[command(flatten)]
     control: ControlArguments,
+    #[command(flatten)]
+    program: input::ProgramArguments,
     /// What the controller takes the robot for; where left out, the robot with the own compliance of every joint
     /// 10 % too small
     #[arg(long, value_name = "MODEL.yaml")]
@@ -79,6 +81,10 @@ struct LoadArguments {
     /// The speed along a path that does not say it, e.g. "600 mm/min"
     #[arg(long, value_name = "SPEED", requires = "path", conflicts_with_all = ["force", "at"], allow_hyphen_values = true, value_parser = positive(Dimension::Speed))]
     feed: Option<f64>,
+    /// Where the frame of the path's poses stands in the base frame: x, y, z, then roll, pitch, yaw, as in
+    /// "1500 mm, 0, 800 mm, 0, 0, 90 deg"
+    #[arg(long, value_name = "x,y,z,roll,pitch,yaw", requires = "path", allow_hyphen_values = true, value_parser = crate::path::place)]
+    place: Option<Matrix4<f64>>,
     /// The axis in the TCP's frame that `ux uy uz` point along, and that of the spindle: x, y, z, -x, -y or -z
     #[arg(long, value_name = "AXIS", default_value = "z", allow_hyphen_values = true, value_parser = tool_axis, conflicts_with = "force")]
     tool_axis: Unit<Vector3<f64>>,

@@ -5,7 +5,9 @@ use std::path::PathBuf;
 use robstiff::Robot;
 use robstiff::nalgebra::{Matrix4, Unit, Vector3};
 use robstiff_machining::compensation::{CompensatedPoint, Keep, Sensitivity, compensate, sensitivity};
-use robstiff_machining::deviation::{Deviation, ForceTable, Load, Stretch, Surface, blame, load_of_cut, removal_rate};
+use robstiff_machining::deviation::{
+    Deviation, ForceTable, Load, Stretch, Surface, blame, load_at_feeds, load_of_cut, removal_rate,
+};
 use robstiff_machining::milling::{CutFile, ForceFrame, Forces};
 use robstiff_machining::path::{SolvedPath, ToolPath};
 use robstiff_robots::quantity::Dimension;
@@ -143,7 +145,12 @@ pub struct CorrectedPoint {
 
 impl ForceArguments {
     /// Reads what is named; `None` where there is no force.
-    pub fn read(&self, tool_axis: Unit<Vector3<f64>>, files: &mut Files) -> Result<Option<CuttingRequest>, Failure> {
+    pub fn read(
+        &self,
+        tool_axis: Unit<Vector3<f64>>,
+        is_program: bool,
+        files: &mut Files,
+    ) -> Result<Option<CuttingRequest>, Failure> {
         let mut cut = |path: &PathBuf| -> Result<(CutFile, String), Failure> {
             let file = input::cut(path)?;
             forces::protect(files, path, &file);
@@ -183,8 +190,7 @@ impl ForceArguments {
             Machined::Side => Surface::Side,
             Machined::Face => Surface::Face,
         };
-        // The sign of the tool's axis says how the file writes it.
-        let axis = self.spindle_axis.unwrap_or(Unit::new_unchecked(tool_axis.abs()));
+        let axis = self.spindle_axis.unwrap_or(from_spindle(tool_axis, is_program));
         let (peak, tolerance, compensate) = (self.peak, self.tolerance, self.compensate);
         Ok(Some(CuttingRequest { source, name, against, peak, surface, axis, tolerance, compensate }))
     }
@@ -201,8 +207,8 @@ impl CuttingRequest {
         let load = match &self.source {
             Source::Table(table, frame) => table.load(solved, *frame, self.axis, self.surface)?,
             Source::Cut(file) => {
-                complain_of_feed(file, &self.name, path);
-                self.load(file, &self.name, solved)?
+                complain_of_feed(file, &self.name, path, self.peak);
+                self.load(file, &self.name, path, solved)?
             }
         };
         has_direction(&load, &self.name, path)?;
@@ -222,7 +228,7 @@ impl CuttingRequest {
         let compared = match (&self.source, &self.against) {
             (Source::Cut(file), Some((other, name))) => {
                 // Its feed may be another than the path's: that is what is compared.
-                let other_load = self.load(other, name, solved)?;
+                let other_load = self.load(other, name, path, solved)?;
                 has_direction(&other_load, name, path)?;
                 let other_deviation = Deviation::of(robot, solved, &other_load).map_err(Failure::new)?;
                 Some([compared(&self.name, file, &deviation), compared(name, other, &other_deviation)])
@@ -245,11 +251,18 @@ impl CuttingRequest {
     }
 
     /// What a cut of that name pushes the tool with along the path.
-    fn load<const N: usize>(&self, file: &CutFile, name: &str, solved: &SolvedPath<N>) -> Result<Load, Failure> {
-        let load = load_of_cut(&file.forces, solved, self.axis, self.surface);
+    fn load<const N: usize>(
+        &self,
+        file: &CutFile,
+        name: &str,
+        path: &ToolPath,
+        solved: &SolvedPath<N>,
+    ) -> Result<Load, Failure> {
         if !self.peak {
-            return Ok(load);
+            return Ok(load_along(&file.forces, path, solved, self.axis, self.surface));
         }
+        // A revolution is that of the cut, with its feed.
+        let load = load_of_cut(&file.forces, solved, self.axis, self.surface);
         let revolution = match &file.forces {
             Forces::Model(cut) => Some(cut.extremes(ANGLES)),
             Forces::Measured { force, speed } => force.revolution(ANGLES, *speed),
@@ -302,9 +315,55 @@ fn has_direction(load: &Load, name: &str, path: &ToolPath) -> Result<(), Failure
     )))
 }
 
-/// Says so where the path moves at another feed than the cut, whose force it is.
-pub fn complain_of_feed(file: &CutFile, name: &str, path: &ToolPath) {
+/// From the spindle to the tip, where nothing else is said: of a program the tool's axis, of a table
+/// that without its sign, which says how the file writes it.
+pub fn from_spindle(tool_axis: Unit<Vector3<f64>>, is_program: bool) -> Unit<Vector3<f64>> {
+    if is_program { tool_axis } else { Unit::new_unchecked(tool_axis.abs()) }
+}
+
+/// The load of a cut: along a program with the program's feeds, along a table with the cut's.
+pub fn load_along<const N: usize>(
+    forces: &Forces,
+    path: &ToolPath,
+    solved: &SolvedPath<N>,
+    axis: Unit<Vector3<f64>>,
+    surface: Surface,
+) -> Load {
+    if path.is_program {
+        load_at_feeds(forces, solved, axis, surface)
+    } else {
+        load_of_cut(forces, solved, axis, surface)
+    }
+}
+
+/// Says so where the path moves at another feed than the cut, whose force it is; of a program that
+/// gives the feed, where its spindle turns with another speed. `peak`: the feed is that of the cut.
+pub fn complain_of_feed(file: &CutFile, name: &str, path: &ToolPath, peak: bool) {
     let Forces::Model(cut) = &file.forces else { return };
+    if path.is_program && !peak {
+        let of_path = path.points.iter().filter(|point| !point.rapid);
+        let Some(of_cut) = cut.speed else {
+            if let Some(point) = of_path.clone().find(|point| point.spindle.is_none_or(|speed| speed == 0.0)) {
+                output::complain(format_args!(
+                    "warning: {}:{}: neither the program nor {name} has the speed of the spindle: the feed is that of {name}",
+                    path.file, point.line
+                ));
+            }
+            return;
+        };
+        let of_path =
+            of_path.filter_map(|point| Some((point.line, point.spindle.filter(|speed| *speed != 0.0)?.abs())));
+        let mut other = of_path.filter(|(_, speed)| (speed / of_cut - 1.0).abs() > 0.01);
+        if let Some((line, speed)) = other.next() {
+            let [speed, of_cut] = [speed, of_cut].map(|speed| significant(speed * 60.0 / core::f64::consts::TAU, 4));
+            output::complain(format_args!(
+                "warning: {}:{line}: the program's spindle turns with {speed} rpm, that of {name} with {of_cut} rpm; the \
+                 program's counts",
+                path.file
+            ));
+        }
+        return;
+    }
     let Some(of_cut) = cut.feed_speed() else { return };
     let differs = |feed: f64| (feed / of_cut - 1.0).abs() > 0.01;
     let Some((line, feed)) =

@@ -27,6 +27,7 @@ const MOST_JUMPS: usize = 20;
 
 /// Joint coordinates of a tool path, how far a cut pushes the tool off it, and the corrected path
 ///
+/// The path is a program of a machine tool (G-code or APT), or a table.
 /// PATH.csv has a point a row: `x y z` and an orientation (`qw qx qy qz`, a
 /// rotation vector `rx ry rz`, angles `a b c` about z, y, x, or the direction
 /// `ux uy uz` of the tool's axis), or joint coordinates `q1`..; each column as
@@ -36,8 +37,8 @@ pub struct Arguments {
     /// The robot's description, or the name of a robot in the catalogue
     #[arg(value_name = "ROBOT.yaml")]
     robot: PathBuf,
-    /// The tool path
-    #[arg(value_name = "PATH.csv")]
+    /// The tool path: a table, G-code (.ngc, .nc, .tap, .gcode, .cnc) or APT (.apt, .cls, .cl)
+    #[arg(value_name = "PATH")]
     path: PathBuf,
     /// Write joint coordinates and poses of every point to FILE
     #[arg(long, value_name = "FILE")]
@@ -49,7 +50,8 @@ pub struct Arguments {
     /// "1500 mm, 0, 800 mm, 0, 0, 90 deg"
     #[arg(long, value_name = "x,y,z,roll,pitch,yaw", allow_hyphen_values = true)]
     place: Option<String>,
-    /// The axis in the TCP's frame that `ux uy uz` point along: x, y, z, -x, -y or -z
+    /// The axis in the TCP's frame that `ux uy uz` point along: x, y, z, -x, -y or -z; of a program that from the spindle
+    /// to the tip
     #[arg(long, value_name = "AXIS", default_value = "z", allow_hyphen_values = true, value_parser = input::tool_axis)]
     tool_axis: Unit<Vector3<f64>>,
     /// Write the same as JSON to FILE
@@ -57,6 +59,8 @@ pub struct Arguments {
     json: Option<PathBuf>,
     #[command(flatten)]
     cutting: cutting::ForceArguments,
+    #[command(flatten)]
+    program: input::ProgramArguments,
 }
 
 /// Solves the path.
@@ -66,7 +70,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         Some(text) => Some(input::coordinates_of("--start", text, &robot)?),
         None => None,
     };
-    let mut path = ToolPath::read(&arguments.path, &robot, arguments.tool_axis)?;
+    let options = arguments.program.options(&arguments.path)?;
+    let mut path = ToolPath::open(&arguments.path, &robot, arguments.tool_axis, &options)?;
     for warning in &path.warnings {
         output::complain(format_args!("warning: {warning}"));
     }
@@ -83,10 +88,10 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
                 arguments.path.display()
             )));
         }
-        path = path.placed(&place(text)?);
+        path = path.placed(&place(text).map_err(Failure::Usage)?);
     }
     let mut files = Files::default();
-    let request = arguments.cutting.read(arguments.tool_axis, &mut files)?;
+    let request = arguments.cutting.read(arguments.tool_axis, path.is_program, &mut files)?;
     if request.is_some() {
         input::refuse_if_rigid(&robot)?;
     }
@@ -122,6 +127,7 @@ struct Point {
     tangent: Option<[f64; 3]>,
     s: f64,
     feed: Option<f64>,
+    rapid: bool,
 }
 
 fn solve<const N: usize>(
@@ -140,20 +146,19 @@ fn solve<const N: usize>(
         tangent: point.tangent.map(|tangent| tangent.into_inner().into()),
         s: point.s,
         feed: point.feed,
+        rapid: point.rapid,
     });
     let closed_form = Inverse::new(robot).has_closed_form();
     Ok(Solved { points: points.collect(), jumps: solved.jumps, closed_form, cutting })
 }
 
-/// A frame from `x,y,z,roll,pitch,yaw`.
-fn place(given: &str) -> Result<Matrix4<f64>, Failure> {
+/// A frame from `x,y,z,roll,pitch,yaw`, as `--place` gives it.
+pub fn place(given: &str) -> Result<Matrix4<f64>, String> {
     let parts: Vec<&str> = given.split(',').collect();
     let [x, y, z, roll, pitch, yaw] = parts[..] else {
-        return Err(Failure::Usage(format!("--place gives {}, six are needed", count(parts.len(), "number"))));
+        return Err(format!("--place gives {}, six are needed", count(parts.len(), "number")));
     };
-    let read = |text, dimension| {
-        input::with_unit(text, dimension).map_err(|error| Failure::Usage(format!("--place: {error}")))
-    };
+    let read = |text, dimension| input::with_unit(text, dimension).map_err(|error| format!("--place: {error}"));
     let turn = Rotation3::from_euler_angles(
         read(roll, Dimension::Angle)?,
         read(pitch, Dimension::Angle)?,
@@ -168,7 +173,11 @@ fn place(given: &str) -> Result<Matrix4<f64>, Failure> {
 fn page(robot: &Description, file: &str, solved: &Solved, axis: Option<String>) -> String {
     let length = solved.points.last().map_or(0.0, |point| point.s - solved.points[0].s);
     let points = count(solved.points.len(), "point");
-    let mut page = format!("{} on {file}: {points}, {} mm, all reached", robot.name, decimals(length * 1e3, 1));
+    let rapids = match solved.points.iter().filter(|point| point.rapid).count() {
+        0 => String::new(),
+        rapids => format!(" ({rapids} by rapids)"),
+    };
+    let mut page = format!("{} on {file}: {points}{rapids}, {} mm, all reached", robot.name, decimals(length * 1e3, 1));
     page += if solved.closed_form { " (closed form)" } else { " (damped least squares)" };
     page += &axis.map(|axis| format!(", tool along {axis} of the TCP's frame")).unwrap_or_default();
     page += "\n\n";
@@ -232,6 +241,8 @@ fn table(robot: &Description, solved: &Solved) -> String {
     csv += "x [mm],y [mm],z [mm],qw,qx,qy,qz,s [mm]";
     let has_feed = solved.points.iter().any(|point| point.feed.is_some());
     csv += if has_feed { ",feed [mm/min]" } else { "" };
+    let has_rapid = solved.points.iter().any(|point| point.rapid);
+    csv += if has_rapid { ",rapid" } else { "" };
     let cutting = solved.cutting.as_ref().map(|cutting| (cutting, deviation::Columns::of(cutting)));
     if let Some((cutting, has)) = cutting {
         csv += &format!(",{}", deviation::columns(cutting, has));
@@ -251,8 +262,11 @@ fn table(robot: &Description, solved: &Solved) -> String {
         let position: Vec<String> = (0..3).map(|axis| cell(pose[(axis, 3)] * 1e3, 6)).collect();
         let turn = quaternion(pose).map(|part| cell(part, 12));
         csv += &format!("{},{},{}", position.join(","), turn.join(","), cell(point.s * 1e3, 6));
-        if let Some(feed) = point.feed {
-            csv += &format!(",{}", cell(feed * 6e4, 6));
+        if has_feed {
+            csv += &format!(",{}", point.feed.map(|feed| cell(feed * 6e4, 6)).unwrap_or_default());
+        }
+        if has_rapid {
+            csv += if point.rapid { ",1" } else { ",0" };
         }
         if let Some((cutting, has)) = cutting {
             csv += &format!(",{}", deviation::cells(cutting, has, i));
@@ -276,6 +290,7 @@ fn document(robot: &Description, solved: &Solved) -> Value {
             "feed_direction": point.tangent.map(json::numbers),
             "s_m": json::number(point.s),
             "feed_m_per_s": point.feed.map(json::number),
+            "rapid": point.rapid,
         })).collect::<Value>(),
         "jumps": solved.jumps.iter().map(|jump| json!({
             "lines": jump.lines,

@@ -30,6 +30,8 @@ mod blame;
 mod contact;
 mod load;
 mod parts;
+#[cfg(test)]
+mod rapids_tests;
 mod removal;
 mod settle;
 mod stretches;
@@ -44,7 +46,7 @@ use robstiff::Robot;
 
 pub use blame::blame;
 pub use contact::{Contact, Load, Surface};
-pub use load::load_of_cut;
+pub use load::{load_at_feeds, load_of_cut};
 pub use parts::parts;
 pub use removal::{removal_rate, width};
 pub use settle::PulledIn;

@@ -77,7 +77,7 @@ impl ForceTable {
     }
 
     /// The load along a path, by rows or between those nearest by arc length; the
-    /// wrenches are along the axes of `frame`. `axis` is that of the tool in the TCP's
+    /// wrenches are along the axes of `frame`. Nothing acts in rapids. `axis` is that of the tool in the TCP's
     /// frame, from the spindle to the tip.
     ///
     /// # Errors
@@ -93,6 +93,9 @@ impl ForceTable {
         let mut undirected = Vec::new();
         let contacts = path.points.iter().enumerate().map(|(i, point)| {
             let mut contact = contact(point, axis, surface, 1.0);
+            if point.rapid {
+                return contact;
+            }
             let turn = match (frame, &contact.frame) {
                 (ForceFrame::Base, _) => Matrix3::identity(),
                 (ForceFrame::Tool, _) => rotation(point),

@@ -9,16 +9,18 @@ use robstiff_robots::quantity::Dimension;
 use robstiff_robots::text::{self, MOST_OF_DOCUMENT};
 
 use super::{
-    Coefficients, Cut, CutFrame, Direction, EndMill, Engagement, ForceFrame, MeasuredForce, coefficients, materials,
+    Coefficients, Cut, CutFrame, Direction, EndMill, Engagement, ForceFrame, Kienzle, MeasuredForce, coefficients,
+    kienzle, kienzle_materials, materials,
 };
 use robstiff_robots::table::text_of;
 
 /// The fields of a cut.
-pub const FIELDS: [&str; 12] = [
+pub const FIELDS: [&str; 13] = [
     "name",
     "tool",
     "material",
     "coefficients",
+    "kienzle",
     "milling",
     "width",
     "engagement",
@@ -170,6 +172,10 @@ fn bare(document: &Document) -> Vec<String> {
             asked.push(taken_in(field, si, unit));
         }
     }
+    let law = map.get("kienzle").and_then(map_of);
+    if law.and_then(|law| law.get("kc11")).is_some_and(|node| node.is_number()) {
+        asked.push(taken_in("kc11", "Pa", "N/mm2"));
+    }
     asked
 }
 
@@ -223,29 +229,32 @@ const MOST_DIAMETERS: f64 = 1000.0;
 fn cut(map: &Map<'_>, speed: Option<Option<f64>>) -> Option<Said> {
     // Everything is read before anything is given up, to report all problems.
     let mill = map.require("tool", "tool: {diameter: 16 mm, teeth: 3, helix: 30 deg}").and_then(|node| mill(&node));
-    let coefficients = coefficients_or_material(map);
+    let resistance = resistance(map);
     let diameter = mill.as_ref().map(|mill| mill.diameter);
     let engagement = engagement(map, diameter);
-    let depth = map.require("depth", "depth: 2 mm").and_then(|node| {
-        let depth = node.positive(Dimension::Length)?;
-        // The flutes would go round without end.
-        if diameter.is_some_and(|diameter| depth > MOST_DIAMETERS * diameter) {
-            node.error(
-                format!("the cut is more than {MOST_DIAMETERS} times as deep as the tool is wide"),
-                "e.g. `2 mm`",
-            );
-            return None;
-        }
-        Some(depth)
-    });
+    let depth = depth(map, diameter);
     let feed = feed(map, mill.as_ref(), speed);
-    let (coefficients, source) = coefficients?;
-    let cut =
-        Cut { mill: mill?, coefficients, engagement: engagement?, depth: depth?, feed_per_tooth: feed?, speed: speed? };
+    let ((resistance, source), engagement, feed_per_tooth) = (resistance?, engagement?, feed?);
+    let coefficients = match resistance {
+        Resistance::Linear(coefficients) => coefficients,
+        Resistance::Kienzle(law) => law.coefficients(engagement, feed_per_tooth),
+    };
+    let cut = Cut { mill: mill?, coefficients, engagement, depth: depth?, feed_per_tooth, speed: speed? };
     Some(Said::Model(cut, source))
 }
 
-fn mill(node: &Node<'_>) -> Option<EndMill> {
+pub(super) fn depth(map: &Map<'_>, diameter: Option<f64>) -> Option<f64> {
+    let node = map.require("depth", "depth: 2 mm")?;
+    let depth = node.positive(Dimension::Length)?;
+    // The flutes would go round without end.
+    if diameter.is_some_and(|diameter| depth > MOST_DIAMETERS * diameter) {
+        node.error(format!("the cut is more than {MOST_DIAMETERS} times as deep as the tool is wide"), "e.g. `2 mm`");
+        return None;
+    }
+    Some(depth)
+}
+
+pub(super) fn mill(node: &Node<'_>) -> Option<EndMill> {
     let map = node.map(&["diameter", "teeth", "helix", "runout"])?;
     let diameter = map.require("diameter", "diameter: 16 mm").and_then(|node| node.positive(Dimension::Length));
     let teeth = map.require("teeth", "teeth: 3").and_then(|node| {
@@ -277,22 +286,44 @@ fn mill(node: &Node<'_>) -> Option<EndMill> {
     Some(EndMill { diameter: diameter?, teeth: teeth?, helix: helix?, runout: runout? })
 }
 
-fn coefficients_or_material(map: &Map<'_>) -> Option<(Coefficients, String)> {
+/// What the material resists with: as the model has it, or by a law that it follows nearly.
+enum Resistance {
+    Linear(Coefficients),
+    Kienzle(Kienzle),
+}
+
+/// With where it comes from.
+fn resistance(map: &Map<'_>) -> Option<(Resistance, String)> {
+    let given = ["coefficients", "kienzle", "material"].into_iter().filter_map(|field| map.get(field));
+    for other in given.skip(1) {
+        other.error("a cut has a material, coefficients or a law of its own", "keep one of them");
+    }
     if let Some(node) = map.get("coefficients") {
-        if let Some(other) = map.get("material") {
-            other.error("a cut has a material or coefficients of its own", "keep one of the two");
-        }
         let own = node.map(&["tangential", "radial", "axial"])?;
-        return coefficients::read(&own).map(|coefficients| (coefficients, String::new()));
+        return coefficients::read(&own).map(|coefficients| (Resistance::Linear(coefficients), String::new()));
+    }
+    if let Some(node) = map.get("kienzle") {
+        return kienzle::read(&node).map(|(law, source)| (Resistance::Kienzle(law), source));
     }
     let node = map.require("material", "material: al7075-t6")?;
+    let id = node.text()?;
+    if kienzle_materials().iter().any(|material| material.id == id) {
+        node.error(
+            format!("of `{id}` the table has the tangential force only"),
+            format!(
+                "write in place of it `kienzle: {{material: {id}, radial: 0.3}}`, with your share of the radial force"
+            ),
+        );
+        return None;
+    }
     let materials = materials();
     let words: Vec<(&str, &super::Material)> =
         materials.iter().map(|material| (material.id.as_str(), material)).collect();
-    node.choice(&words).map(|material| (material.coefficients, format!("{}; {}", material.name, material.source)))
+    let found = node.choice(&words)?;
+    Some((Resistance::Linear(found.coefficients), format!("{}; {}", found.name, found.source)))
 }
 
-fn engagement(map: &Map<'_>, diameter: Option<f64>) -> Option<Engagement> {
+pub(super) fn engagement(map: &Map<'_>, diameter: Option<f64>) -> Option<Engagement> {
     if let Some(node) = map.get("engagement") {
         for field in ["milling", "width"] {
             if let Some(other) = map.get(field) {
@@ -342,7 +373,7 @@ fn engagement(map: &Map<'_>, diameter: Option<f64>) -> Option<Engagement> {
 }
 
 /// The feed per tooth, as such or from the speeds of feed and spindle.
-fn feed(map: &Map<'_>, mill: Option<&EndMill>, speed: Option<Option<f64>>) -> Option<f64> {
+pub(super) fn feed(map: &Map<'_>, mill: Option<&EndMill>, speed: Option<Option<f64>>) -> Option<f64> {
     let (node, feed) = match map.get("feed_speed") {
         Some(node) => {
             if let Some(other) = map.get("feed") {

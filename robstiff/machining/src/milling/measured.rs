@@ -6,7 +6,7 @@ use nalgebra::{Matrix3, Vector3};
 use robstiff_robots::Diagnostics;
 use robstiff_robots::quantity::Dimension;
 
-use super::{CutFrame, Revolution};
+use super::{CutFrame, Revolution, dynoware};
 use robstiff_robots::table::Table;
 
 /// Which axes Fx, Fy and Fz of a measured force are along.
@@ -54,7 +54,9 @@ impl MeasuredForce {
     /// `t` (s) or `angle` (rad) (or other units, `Fx [kN]`); `file` is the
     /// name that problems show, `on_workpiece` says that the forces are those on
     /// the workpiece, which the tool has with the opposite sign. With what the
-    /// reader noticed without refusing the table.
+    /// reader noticed without refusing the table. `time` stands for `t`, too. The head of a file that
+    /// Kistler's DynoWare exports names columns, units and, where there is no column of times, the
+    /// sampling rate.
     ///
     /// # Errors
     /// All that is wrong with the table, each problem with its place.
@@ -64,9 +66,12 @@ impl MeasuredForce {
         frame: ForceFrame,
         on_workpiece: bool,
     ) -> Result<(Self, Vec<std::string::String>), Diagnostics> {
-        let table = Table::parse(file, text)?;
+        let export = dynoware::export(file, text).transpose()?;
+        let rate = export.as_ref().and_then(|export| export.rate);
+        let table = Table::parse(file, export.as_ref().map_or(text, |export| &export.table))?;
         let forces = COLUMNS.map(|name| table.require(name, Dimension::Force));
         let (time, angle) = (table.numbers("t", Dimension::Time), table.numbers("angle", Dimension::Angle));
+        let time = time.or_else(|| table.numbers("time", Dimension::Time));
         let sign = if on_workpiece { -1.0 } else { 1.0 };
         let sample = |record| {
             let force = table.all(record, [forces[0]?, forces[1]?, forces[2]?])?;
@@ -78,7 +83,12 @@ impl MeasuredForce {
             Some(Sample { time: time.flatten(), angle: angle.flatten(), force: Vector3::from(force) * sign })
         };
         let samples: Vec<Option<Sample>> = table.records.iter().map(sample).collect();
-        let samples: Option<Vec<Sample>> = samples.into_iter().collect();
+        let mut samples: Option<Vec<Sample>> = samples.into_iter().collect();
+        if let (None, Some(rate)) = (time, rate) {
+            for (index, sample) in samples.iter_mut().flatten().enumerate() {
+                sample.time = Some(index as f64 / rate);
+            }
+        }
         let times = || samples.iter().flatten().map(|sample| sample.time);
         if let Some(back) = times().zip(times().skip(1)).position(|(one, next)| next < one) {
             table.warn(&std::format!("the times go back on line {}", table.records[back + 1].line));
@@ -129,7 +139,7 @@ impl MeasuredForce {
 
     /// The angle of the spindle at each sample (rad): the recorded one, or the time's at
     /// the speed of the spindle (rad/s); `None` where neither is known.
-    fn angles(&self, speed: Option<f64>) -> Option<Vec<f64>> {
+    pub(super) fn angles(&self, speed: Option<f64>) -> Option<Vec<f64>> {
         self.samples.iter().map(|sample| sample.angle.or_else(|| Some(sample.time? * speed?))).collect()
     }
 

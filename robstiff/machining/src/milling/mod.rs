@@ -29,11 +29,15 @@
 
 mod coefficients;
 mod cut;
+mod dynoware;
 mod engagement;
 mod file;
+pub mod fit;
 mod force;
 mod frame;
+mod kienzle;
 mod measured;
+mod records;
 mod revolution;
 #[cfg(feature = "schema")]
 pub mod schema;
@@ -46,4 +50,6 @@ pub use engagement::{Direction, Engagement};
 pub use file::{CutFile, Forces};
 pub use force::{Range, Revolution};
 pub use frame::CutFrame;
+pub use kienzle::{Kienzle, KienzleMaterial, kienzle_materials};
 pub use measured::{ForceFrame, MeasuredForce, Sample};
+pub use records::{Recorded, Records};

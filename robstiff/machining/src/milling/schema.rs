@@ -6,6 +6,7 @@ use serde_json::{Value, json};
 
 use super::coefficients::materials;
 use super::file::FIELDS;
+use super::kienzle::kienzle_materials;
 
 /// The schema, for editors.
 pub fn schema() -> Value {
@@ -17,6 +18,7 @@ pub fn schema() -> Value {
             json!({ "enum": ids, "description": "A material of the table, for a first estimate" })
         }
         "coefficients" => coefficients(),
+        "kienzle" => kienzle(),
         "milling" => word(&["up", "down", "slot"], "How the teeth meet the material"),
         "width" => quantity(Dimension::Length, Sign::Positive, "The radial width of the cut"),
         "engagement" => described(
@@ -60,6 +62,21 @@ fn coefficients() -> Value {
         _ => along("Along the axis of the tool"),
     });
     described(schema, "What the material resists with, in place of `material`")
+}
+
+fn kienzle() -> Value {
+    let fields = ["material", "kc11", "mc", "radial", "axial"];
+    let schema = object(&fields, &["radial"], |field| match field {
+        "material" => {
+            let ids: Vec<String> = kienzle_materials().into_iter().map(|material| material.id).collect();
+            json!({ "enum": ids, "description": "A material of the table, in place of `kc11` and `mc`" })
+        }
+        "kc11" => quantity(Dimension::Pressure, Sign::Positive, "The specific cutting force of a chip of 1 mm"),
+        "mc" => quantity(Dimension::Number, Sign::NotNegative, "How it falls with the thickness of the chip"),
+        "radial" => quantity(Dimension::Number, Sign::Any, "The radial force as a part of the tangential one"),
+        _ => default(quantity(Dimension::Number, Sign::Any, "The axial force as a part of the tangential one"), 0),
+    });
+    described(schema, "The specific cutting force after Kienzle, in place of `material`")
 }
 
 fn measured() -> Value {

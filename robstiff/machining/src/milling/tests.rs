@@ -5,6 +5,7 @@ use nalgebra::Vector3;
 use super::*;
 
 mod file;
+mod fit;
 
 const MATERIAL: Coefficients = Coefficients { ktc: 631e6, kte: 13e3, krc: 99e6, kre: 10e3, kac: 273e6, kae: 2.8e3 };
 

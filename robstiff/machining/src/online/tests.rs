@@ -300,7 +300,17 @@ fn square() -> (Generic<5>, Timeline<5>) {
         let target = crate::inverse::Target::axis(position, Vector3::x_axis(), direction);
         let q = inverse.nearest(&target, &pose()).unwrap();
         let feed = (k > 2).then_some(0.02);
-        crate::path::PathPoint { line: k + 2, q, pose: at, tangent: None, s: 0.04 * k as f64, feed }
+        crate::path::PathPoint {
+            line: k + 2,
+            q,
+            pose: at,
+            tangent: None,
+            s: 0.04 * k as f64,
+            feed,
+            rapid: false,
+            spindle: None,
+            tool: None,
+        }
     };
     let points = corners.into_iter().enumerate().map(point).collect();
     let path = crate::path::SolvedPath { points, jumps: vec![] };

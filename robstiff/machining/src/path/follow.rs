@@ -80,7 +80,8 @@ impl ToolPath {
         let postures: Vec<SVector<f64, N>> = followed.postures.into_iter().flatten().collect();
         let poses: Vec<Matrix4<f64>> = postures.iter().map(|q| robot.transform(q)).collect();
         let positions: Vec<Vector3<f64>> = poses.iter().map(position).collect();
-        let (lengths, tangents) = (arc_lengths(&positions), tangents(&positions));
+        let rapid = |i: usize| self.points[i].rapid;
+        let (lengths, tangents) = (arc_lengths(&positions), tangents(&positions, rapid));
         let points = self.points.iter().enumerate().map(|(i, point)| PathPoint {
             line: point.line,
             q: postures[i],
@@ -88,6 +89,9 @@ impl ToolPath {
             tangent: tangents[i],
             s: point.s.unwrap_or(lengths[i]),
             feed: point.feed,
+            rapid: point.rapid,
+            spindle: point.spindle,
+            tool: point.tool,
         });
         Ok(SolvedPath { points: points.collect(), jumps: followed.jumps })
     }
@@ -226,9 +230,13 @@ fn arc_lengths(positions: &[Vector3<f64>]) -> Vec<f64> {
 /// than 174 degrees apart.
 const TURNS_BACK: f64 = 0.1;
 
-/// The feed directions; points in one place share theirs.
-fn tangents(positions: &[Vector3<f64>]) -> Vec<Option<Unit<Vector3<f64>>>> {
-    let chord = |i: usize| Unit::try_new(positions[i + 1] - positions[i], 1e-12);
+/// The feed directions; points in one place share theirs. Rapids are no feeds, and give a direction
+/// only between rapids.
+fn tangents(positions: &[Vector3<f64>], rapid: impl Fn(usize) -> bool) -> Vec<Option<Unit<Vector3<f64>>>> {
+    let chord = |i: usize| {
+        let direction = Unit::try_new(positions[i + 1] - positions[i], 1e-12);
+        direction.map(|direction| (direction, rapid(i + 1)))
+    };
     let count = positions.len();
     let mut arriving = std::vec![None; count];
     for i in 1..count {
@@ -238,11 +246,17 @@ fn tangents(positions: &[Vector3<f64>]) -> Vec<Option<Unit<Vector3<f64>>>> {
     for i in (0..count.saturating_sub(1)).rev() {
         leaving[i] = chord(i).or(leaving[i + 1]);
     }
-    type Direction = Option<Unit<Vector3<f64>>>;
+    type Direction = Option<(Unit<Vector3<f64>>, bool)>;
     let between = |(arriving, leaving): (Direction, Direction)| {
-        let (Some(before), Some(after)) = (arriving, leaving) else { return leaving.or(arriving) };
+        let of = |direction: Direction| direction.map(|(direction, _)| direction);
+        let (before, after) = match (arriving, leaving) {
+            (Some((before, false)), Some((_, true))) => return Some(before),
+            (Some((_, true)), Some((after, false))) => return Some(after),
+            (Some((before, _)), Some((after, _))) => (before, after),
+            _ => return of(leaving).or(of(arriving)),
+        };
         // Where the path turns back there is nothing halfway, but for rounding of the file.
-        Unit::try_new(before.into_inner() + after.into_inner(), TURNS_BACK).or(leaving)
+        Unit::try_new(before.into_inner() + after.into_inner(), TURNS_BACK).or(Some(after))
     };
     arriving.into_iter().zip(leaving).map(between).collect()
 }

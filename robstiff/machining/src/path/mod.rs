@@ -6,6 +6,9 @@
 //! for every point, or the names of all points that cannot be reached.
 
 pub(crate) mod follow;
+mod program;
+#[cfg(test)]
+mod program_tests;
 pub(crate) mod read;
 mod seeds;
 #[cfg(test)]
@@ -27,6 +30,8 @@ pub struct ToolPath {
     pub points: Vec<Waypoint>,
     /// What the reader noticed without refusing the file.
     pub warnings: Vec<String>,
+    /// Whether it is a program of a machine tool: its feeds are those of the cut.
+    pub is_program: bool,
     /// The tool's axis in the TCP's frame.
     tool: Unit<Vector3<f64>>,
     /// The file's lines, to show them.
@@ -44,6 +49,12 @@ pub struct Waypoint {
     pub feed: Option<f64>,
     /// The arc length (m), where the file says it.
     pub s: Option<f64>,
+    /// Whether the point is reached by a rapid, in which nothing is cut.
+    pub rapid: bool,
+    /// The speed of the spindle (rad/s), clockwise seen from it, where the file says it.
+    pub spindle: Option<f64>,
+    /// The number of the tool, where the file says it.
+    pub tool: Option<u32>,
 }
 
 /// Where the robot is to be at a point.
@@ -75,13 +86,20 @@ pub struct PathPoint<const N: usize> {
     pub pose: Matrix4<f64>,
     /// The feed direction, in the base frame: along the chord to the next
     /// point at the start, from the last one at the end, and halfway between
-    /// the two elsewhere. `None` where the TCP stays in place all along.
+    /// the two elsewhere; where one of the two is a rapid, along the other.
+    /// `None` where the TCP stays in place all along.
     pub tangent: Option<Unit<Vector3<f64>>>,
     /// The arc length from the first point (m): as the file says it, else the
     /// sum of the chords.
     pub s: f64,
     /// How fast the TCP moves along the path (m/s), where the file says it.
     pub feed: Option<f64>,
+    /// Whether the point is reached by a rapid, in which nothing is cut.
+    pub rapid: bool,
+    /// The speed of the spindle (rad/s), clockwise seen from it, where the file says it.
+    pub spindle: Option<f64>,
+    /// The number of the tool, where the file says it.
+    pub tool: Option<u32>,
 }
 
 impl<const N: usize> PathPoint<N> {
@@ -138,7 +156,8 @@ pub fn lines(of: impl IntoIterator<Item = usize>) -> String {
     let mut runs: Vec<[usize; 2]> = Vec::new();
     for line in of {
         match runs.last_mut() {
-            Some([_, last]) if *last + 1 == line => *last = line,
+            // An arc of a program has many points on its line.
+            Some([_, last]) if *last == line || *last + 1 == line => *last = line,
             _ => runs.push([line, line]),
         }
     }

@@ -85,6 +85,7 @@ impl ToolPath {
         let table = Table::parse(file, text)?;
         let feed = table.numbers("feed", Dimension::Speed);
         let s = table.numbers("s", Dimension::Length);
+        let rapid = table.numbers("rapid", Dimension::Number);
         let columns = columns(&table, robot);
         for name in BESIDE {
             table.position(name);
@@ -96,12 +97,17 @@ impl ToolPath {
             let mut last_s = f64::NEG_INFINITY;
             let rows = table.records.iter().map(|record| {
                 let goal = goal(&table, record, &columns, tool);
+                // A file with rapids has rows without a feed.
+                let feed = feed.filter(|column| rapid.is_none() || !table.is_empty(record, *column));
                 let feed = feed.map(|column| positive(&table, record, column));
                 let s = s.map(|column| not_back(&table, record, column, &mut last_s));
-                if feed == Some(None) || s == Some(None) {
+                let rapid = rapid.map(|column| table.number(record, column));
+                if feed == Some(None) || s == Some(None) || rapid == Some(None) {
                     return None;
                 }
-                Some(Waypoint { line: record.line, goal: goal?, feed: feed.flatten(), s: s.flatten() })
+                let rapid = rapid.flatten().is_some_and(|rapid| rapid != 0.0);
+                let (feed, s) = (feed.flatten(), s.flatten());
+                Some(Waypoint { line: record.line, goal: goal?, feed, s, rapid, spindle: None, tool: None })
             });
             // Every row is checked before any gives the file up.
             rows.collect::<Vec<_>>().into_iter().collect::<Option<Vec<_>>>()
@@ -110,7 +116,8 @@ impl ToolPath {
             table.warn(&warning);
         }
         let (points, warnings) = table.finish(points)?;
-        Ok(Self { file: file.to_owned(), points, warnings, tool, lines: Lines::new(text.to_owned()) })
+        let is_program = false;
+        Ok(Self { file: file.to_owned(), points, warnings, is_program, tool, lines: Lines::new(text.to_owned()) })
     }
 
     /// A line of the file (from 1).
