@@ -2,8 +2,10 @@
 
 use robstiff::Robot;
 use robstiff::nalgebra::{Matrix4, SVector};
-use robstiff_robots::JointKind;
 use robstiff_robots::urdf::Chain;
+use robstiff_robots::{Description, JointKind};
+
+use crate::text::{count, significant};
 
 /// Poses at which both are compared.
 pub const POSES: usize = 1000;
@@ -32,4 +34,16 @@ pub fn largest_difference<const N: usize>(robot: &impl Robot<N>, chain: &Chain) 
         if apart.iter().any(|entry| entry.is_nan()) { f64::NAN } else { apart.max() }
     };
     (0..POSES).map(difference).fold(0.0, |most, apart| if apart > most || apart.is_nan() { apart } else { most })
+}
+
+/// The first line of a page: the joints of a chain, and by how much what `agrees` says does so.
+pub fn heading(robot: &Description, chain: &Chain, agrees: &str, apart: f64) -> String {
+    format!(
+        "{}: {} from {} to {}, {agrees} within {} m at {POSES} poses\n\n",
+        robot.name,
+        count(robot.joints.len(), "joint"),
+        chain.base,
+        chain.tip,
+        significant(apart.max(1e-16), 1),
+    )
 }

@@ -8,7 +8,7 @@ use robstiff_robots::text::MOST_OF_URDF;
 use robstiff_robots::urdf::{Export, Moved, Tree, is_said_by_origins};
 use serde_json::{Value, json};
 
-use crate::agreement::{POSES, largest_difference};
+use crate::agreement::{POSES, heading, largest_difference};
 use crate::failure::Failure;
 use crate::output::{self, Files};
 use crate::text::{Table, count, decimals};
@@ -80,15 +80,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 }
 
 fn page(robot: &Description, exported: &Export, apart: f64) -> String {
-    let chain = &exported.chain;
-    let mut page = format!(
-        "{}: {} from {} to {}, the file agrees with the description within {} m at {POSES} poses\n\n",
-        robot.name,
-        count(robot.joints.len(), "joint"),
-        chain.base,
-        chain.tip,
-        text::significant(apart.max(1e-16), 1),
-    );
+    let mut page = heading(robot, &exported.chain, "the file agrees with the description", apart);
     let mut table = Table::new(2, ["", "", "shifted [mm]", "turned [deg]", "limits"]);
     let row = |label: String, moved: &Moved, limits: &str| {
         let numbers = [decimals(moved.shift * 1e3, 3), decimals(moved.turn.to_degrees(), 4)];

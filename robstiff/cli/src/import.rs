@@ -7,10 +7,10 @@ use robstiff_robots::Description;
 use robstiff_robots::urdf::{Chain, Tree};
 use serde_json::{Value, json};
 
-use crate::agreement::{POSES, largest_difference};
+use crate::agreement::{POSES, heading, largest_difference};
 use crate::failure::Failure;
 use crate::output::{self, Files};
-use crate::text::{Table, count, decimals};
+use crate::text::{Table, decimals};
 use crate::{json, text};
 
 /// Writes the description of a serial chain of a URDF file: standard DH table, base, tool, limits, masses
@@ -106,14 +106,7 @@ fn complain_of_length(robot: &Description) {
 }
 
 fn page(robot: &Description, chain: &Chain, apart: f64) -> String {
-    let mut page = format!(
-        "{}: {} from {} to {}, agrees with the file within {} m at {POSES} poses\n\n",
-        robot.name,
-        count(robot.joints.len(), "joint"),
-        chain.base,
-        chain.tip,
-        text::significant(apart.max(1e-16), 1),
-    );
+    let mut page = heading(robot, chain, "agrees with the file", apart);
     let mut table = Table::new(2, ["", "", "theta [deg]", "d [mm]", "a [mm]", "alpha [deg]", "limits", ""]);
     for (number, (joint, row)) in (1..).zip(chain.joints.iter().zip(&robot.joints)) {
         let limits = row.limits.map(|limits| limits.map(|limit| decimals(row.for_people(limit), 1)));

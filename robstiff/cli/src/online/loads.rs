@@ -16,6 +16,7 @@ use crate::failure::Failure;
 use crate::input::Force;
 use crate::output::{self, Files};
 use crate::path::cutting::{complain_of_feed, from_spindle, load_along};
+use crate::path::refuse_if_in_no_frame;
 use crate::text::significant;
 use crate::{forces, input};
 
@@ -123,10 +124,7 @@ impl LoadRequest {
             let name = format!("{} under {by}", path.display());
             let mut path = ToolPath::open(path, robot, load.tool_axis, &arguments.program.options(path)?)?;
             if let Some(place) = &load.place {
-                if path.gives_joints() {
-                    let message = format!("--place: {} gives joint coordinates, which stand in no frame", path.file);
-                    return Err(Failure::Usage(message));
-                }
+                refuse_if_in_no_frame(&path)?;
                 path = path.placed(place);
             }
             if let Source::Cut(file) = &source {

@@ -8,7 +8,7 @@ use robstiff_machining::compensation::{CompensatedPoint, Keep, Sensitivity, comp
 use robstiff_machining::deviation::{
     Deviation, ForceTable, Load, Stretch, Surface, blame, load_at_feeds, load_of_cut, removal_rate,
 };
-use robstiff_machining::milling::{CutFile, ForceFrame, Forces};
+use robstiff_machining::milling::{Cut, CutFile, ForceFrame, Forces};
 use robstiff_machining::path::{SolvedPath, ToolPath};
 use robstiff_robots::quantity::Dimension;
 
@@ -341,28 +341,7 @@ pub fn load_along<const N: usize>(
 pub fn complain_of_feed(file: &CutFile, name: &str, path: &ToolPath, peak: bool) {
     let Forces::Model(cut) = &file.forces else { return };
     if path.is_program && !peak {
-        let of_path = path.points.iter().filter(|point| !point.rapid);
-        let Some(of_cut) = cut.speed else {
-            if let Some(point) = of_path.clone().find(|point| point.spindle.is_none_or(|speed| speed == 0.0)) {
-                output::complain(format_args!(
-                    "warning: {}:{}: neither the program nor {name} has the speed of the spindle: the feed is that of {name}",
-                    path.file, point.line
-                ));
-            }
-            return;
-        };
-        let of_path =
-            of_path.filter_map(|point| Some((point.line, point.spindle.filter(|speed| *speed != 0.0)?.abs())));
-        let mut other = of_path.filter(|(_, speed)| (speed / of_cut - 1.0).abs() > 0.01);
-        if let Some((line, speed)) = other.next() {
-            let [speed, of_cut] = [speed, of_cut].map(|speed| significant(speed * 60.0 / core::f64::consts::TAU, 4));
-            output::complain(format_args!(
-                "warning: {}:{line}: the program's spindle turns with {speed} rpm, that of {name} with {of_cut} rpm; the \
-                 program's counts",
-                path.file
-            ));
-        }
-        return;
+        return complain_of_speed(cut, name, path);
     }
     let Some(of_cut) = cut.feed_speed() else { return };
     let differs = |feed: f64| (feed / of_cut - 1.0).abs() > 0.01;
@@ -374,6 +353,29 @@ pub fn complain_of_feed(file: &CutFile, name: &str, path: &ToolPath, peak: bool)
     let [of_path, of_cut] = [feed, of_cut].map(|feed| significant(feed * 6e4, 4));
     output::complain(format_args!(
         "warning: {}:{line}: the path's feed is {of_path} mm/min, the one that {name} computes its force for {of_cut} mm/min",
+        path.file
+    ));
+}
+
+/// Says so where nobody has the speed of the spindle, or a program turns it with another than the cut.
+fn complain_of_speed(cut: &Cut, name: &str, path: &ToolPath) {
+    let mut cutting = path.points.iter().filter(|point| !point.rapid);
+    let Some(of_cut) = cut.speed else {
+        if let Some(point) = cutting.find(|point| point.spindle.is_none_or(|speed| speed == 0.0)) {
+            output::complain(format_args!(
+                "warning: {}:{}: neither the program nor {name} has the speed of the spindle: the feed is that of {name}",
+                path.file, point.line
+            ));
+        }
+        return;
+    };
+    let speeds = cutting.filter_map(|point| Some((point.line, point.spindle.filter(|speed| *speed != 0.0)?.abs())));
+    let mut other = speeds.filter(|(_, speed)| (speed / of_cut - 1.0).abs() > 0.01);
+    let Some((line, speed)) = other.next() else { return };
+    let [speed, of_cut] = [speed, of_cut].map(|speed| significant(speed * 60.0 / core::f64::consts::TAU, 4));
+    output::complain(format_args!(
+        "warning: {}:{line}: the program's spindle turns with {speed} rpm, that of {name} with {of_cut} rpm; the \
+         program's counts",
         path.file
     ));
 }

@@ -12,6 +12,7 @@ use robstiff::nalgebra::{Matrix4, Rotation3, SVector, Unit, UnitQuaternion, Vect
 use robstiff::{Robot, with_robot};
 use robstiff_machining::inverse::Inverse;
 use robstiff_machining::path::{Jump, ToolPath};
+use robstiff_machining::program::angles::to_wxyz;
 use robstiff_robots::quantity::Dimension;
 use robstiff_robots::{Description, JointKind};
 use serde_json::{Value, json};
@@ -82,12 +83,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         )));
     }
     if let Some(text) = &arguments.place {
-        if path.gives_joints() {
-            return Err(Failure::Usage(format!(
-                "--place: {} gives joint coordinates, which stand in no frame",
-                arguments.path.display()
-            )));
-        }
+        refuse_if_in_no_frame(&path)?;
         path = path.placed(&place(text).map_err(Failure::Usage)?);
     }
     let mut files = Files::default();
@@ -150,6 +146,15 @@ fn solve<const N: usize>(
     });
     let closed_form = Inverse::new(robot).has_closed_form();
     Ok(Solved { points: points.collect(), jumps: solved.jumps, closed_form, cutting })
+}
+
+/// That `--place` has a frame to put somewhere.
+pub fn refuse_if_in_no_frame(path: &ToolPath) -> Result<(), Failure> {
+    if path.gives_joints() {
+        let message = format!("--place: {} gives joint coordinates, which stand in no frame", path.file);
+        return Err(Failure::Usage(message));
+    }
+    Ok(())
 }
 
 /// A frame from `x,y,z,roll,pitch,yaw`, as `--place` gives it.
@@ -224,11 +229,7 @@ fn page(robot: &Description, file: &str, solved: &Solved, axis: Option<String>) 
 
 fn quaternion(pose: &Matrix4<f64>) -> [f64; 4] {
     let rotation = Rotation3::from_matrix_unchecked(pose.fixed_view::<3, 3>(0, 0).into_owned());
-    let turn = UnitQuaternion::from_rotation_matrix(&rotation);
-    let parts = [turn.w, turn.i, turn.j, turn.k];
-    // A turn has two quaternions; the one whose first part that is not zero is positive.
-    let sign = parts.into_iter().find(|part| part.abs() > 1e-9).map_or(1.0, f64::signum);
-    parts.map(|part| part * sign)
+    to_wxyz(&UnitQuaternion::from_rotation_matrix(&rotation))
 }
 
 /// A row for each point, which the command reads again; with the joint coordinates

@@ -5,7 +5,7 @@ use std::collections::VecDeque;
 use nalgebra::{Unit, Vector3};
 
 use super::arc::{Arc, Given};
-use super::moves::{Move, Options};
+use super::moves::{Move, Options, tool_number};
 use super::notes::{Note, Notes};
 use super::statement::{Problem, Statement};
 use super::track::{Common, Pace, Shape, Turn, split};
@@ -144,11 +144,7 @@ impl<'o> Apt<'o> {
         notes: &mut Notes,
     ) -> Result<bool, Problem> {
         if self.ended {
-            if text.trim().is_empty() || text.trim().starts_with("$$") {
-                return Ok(true);
-            }
-            notes.add(Note::Behind, number);
-            return Ok(false);
+            return Ok(notes.behind(text.trim().is_empty() || text.trim().starts_with("$$"), number));
         }
         let goes_on = core::mem::take(&mut self.is_open);
         let mut statement = core::mem::take(&mut self.statement);
@@ -183,12 +179,10 @@ impl<'o> Apt<'o> {
             "FEDRAT" => self.feed = Some(self.feed(statement)?),
             "SPINDL" => self.spindle(statement)?,
             "LOADTL" | "TOOLNO" | "LOAD" | "TURRET" => {
-                let number = statement.first_number();
-                let whole = number.filter(|n| *n >= 0.0 && n.fract() == 0.0 && *n <= f64::from(u32::MAX));
-                let Some(number) = whole else {
+                let Some(number) = statement.first_number().and_then(tool_number) else {
                     return Err(statement.fault("the tool has no number", "e.g. `LOADTL/3`"));
                 };
-                self.tool = Some(number as u32);
+                self.tool = Some(number);
             }
             "MULTAX" if statement.has("OFF") => self.axis = Vector3::z_axis(),
             "MULTAX" => {}

@@ -5,7 +5,7 @@ use std::collections::VecDeque;
 use super::fault::Fault;
 use super::lex::Block;
 use super::modal::{FeedMode, Motion, Once, Tcp};
-use super::moves::{Move, OFFSETS, Options};
+use super::moves::{Move, OFFSETS, Options, tool_number};
 use super::notes::{Note, Notes};
 use super::state::{LINEAR, ROTARY, State};
 
@@ -37,11 +37,7 @@ impl<'o> GCode<'o> {
         notes: &mut Notes,
     ) -> Result<bool, Fault> {
         if self.ended {
-            if !matches!(text.trim(), "" | "%") {
-                notes.add(Note::Behind, number);
-                return Ok(false);
-            }
-            return Ok(true);
+            return Ok(notes.behind(matches!(text.trim(), "" | "%"), number));
         }
         let mut block = core::mem::take(&mut self.block);
         let read = block.read(text).and_then(|marks| {
@@ -105,11 +101,10 @@ impl<'o> GCode<'o> {
     fn functions(&mut self, line: usize, block: &Block, notes: &mut Notes) -> Result<bool, Fault> {
         let mut ends = false;
         if let Some(word) = block.word(b'T') {
-            let whole = word.value >= 0.0 && word.value.fract() == 0.0 && word.value <= f64::from(u32::MAX);
-            if !whole {
+            let Some(number) = tool_number(word.value) else {
                 return Err(word.fault("a tool has a whole number", "e.g. `T3`"));
-            }
-            self.next_tool = Some(word.value as u32);
+            };
+            self.next_tool = Some(number);
         }
         for word in &block.m {
             match word.tenths() {

@@ -25,6 +25,11 @@ pub struct Move {
     pub tool: Option<u32>,
 }
 
+/// The number of a tool: a whole one, as it is written.
+pub(super) fn tool_number(written: f64) -> Option<u32> {
+    (written >= 0.0 && written.fract() == 0.0 && written <= f64::from(u32::MAX)).then_some(written as u32)
+}
+
 /// Work offsets: G53, G54 to G59, G59.1 to G59.3.
 pub const OFFSETS: [&str; 10] = ["G53", "G54", "G55", "G56", "G57", "G58", "G59", "G59.1", "G59.2", "G59.3"];
 

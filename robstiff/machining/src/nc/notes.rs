@@ -50,6 +50,14 @@ impl Notes {
         }
     }
 
+    /// Notes a line behind the end of the program, unless it says nothing; whether reading goes on.
+    pub fn behind(&mut self, says_nothing: bool, line: usize) -> bool {
+        if !says_nothing {
+            self.add(Note::Behind, line);
+        }
+        says_nothing
+    }
+
     /// The warnings of a file.
     pub fn warnings(&self, file: &str) -> Vec<String> {
         let mut warnings: Vec<String> =

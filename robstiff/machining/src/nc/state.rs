@@ -368,7 +368,7 @@ impl<'o> State<'o> {
         };
         let feed = self.pace(out, Motion::Feed)?;
         for _ in 0..count as usize {
-            let mut goal = Goal { ..self.goal(block, None)? };
+            let mut goal = self.goal(block, None)?;
             let level = self.at[across];
             // Never sideways below R.
             if level.is_some_and(|level| level < r) {

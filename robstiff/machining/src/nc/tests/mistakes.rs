@@ -59,7 +59,7 @@ fn mistakes_have_their_line_and_column() {
     }
 }
 
-/// All are told, in the order of the file; a hundred are enough.
+/// All are reported, in the order of the file; a hundred are enough.
 #[test]
 fn a_file_has_all_its_mistakes_shown() {
     let said = refused("G21 G0 X0 Y0 Z0\nG41\nG1 X1 F60\nG2 X5\nU1\n");

@@ -1,6 +1,6 @@
 use proptest::prelude::*;
 
-use super::made::{Digits, edits, file, moved, program, same};
+use super::made::{Digits, edits, file, kept_lines, moved, program, same};
 use crate::program::ls::{read, write};
 use crate::program::{
     Configuration, Frame, Instruction, Language, Motion, Move, Position, Program, Speed, Target, Zone,
@@ -83,16 +83,7 @@ fn a_taught_program_is_read_and_changed_in_place() {
     assert!((pose.rotation * nalgebra::Vector3::y() - nalgebra::Vector3::x()).norm() < 1e-12, "{pose}");
     let fanuc = Configuration::Fanuc { flip: false, left: None, up: true, front: true, turns: [0, -1, 0] };
     assert_eq!(*which, Some(fanuc));
-    let kept: Vec<usize> = document
-        .program()
-        .instructions
-        .iter()
-        .filter_map(|one| match one {
-            Instruction::KeptMove { line, .. } => Some(*line),
-            _ => None,
-        })
-        .collect();
-    assert_eq!(kept, [15, 17, 18, 19]);
+    assert_eq!(kept_lines(&document), [15, 17, 18, 19]);
     let works: Vec<&str> = document
         .program()
         .instructions

@@ -228,3 +228,12 @@ pub fn moved(position: &Position) -> Position {
     };
     Position { target, external: position.external.clone() }
 }
+
+/// The lines of the motions that are kept as they are.
+pub fn kept_lines(document: &Document) -> Vec<usize> {
+    let line = |one: &Instruction| match one {
+        Instruction::KeptMove { line, .. } => Some(*line),
+        _ => None,
+    };
+    document.program().instructions.iter().filter_map(line).collect()
+}

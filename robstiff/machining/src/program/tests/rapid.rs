@@ -1,6 +1,6 @@
 use proptest::prelude::*;
 
-use super::made::{Digits, edits, file, moved, program, same};
+use super::made::{Digits, edits, file, kept_lines, moved, program, same};
 use crate::program::rapid::{read, write};
 use crate::program::{Configuration, Instruction, Language, Motion, Move, Position, Speed, Target, Zone};
 
@@ -78,16 +78,7 @@ fn a_module_is_read_and_changed_in_place() {
         })
         .collect();
     assert_eq!(works, [0.0, 1.01]);
-    let kept: Vec<usize> = document
-        .program()
-        .instructions
-        .iter()
-        .filter_map(|one| match one {
-            Instruction::KeptMove { line, .. } => Some(*line),
-            _ => None,
-        })
-        .collect();
-    assert_eq!(kept, [19, 20, 21]);
+    assert_eq!(kept_lines(&document), [19, 20, 21]);
     edits(&document, moved, DIGITS).unwrap();
     let positions: Vec<Position> = document.moves().map(|to| moved(&to.position)).collect();
     let text = &document.with_positions(&positions).unwrap()[0].text;
