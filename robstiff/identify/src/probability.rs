@@ -17,13 +17,6 @@ pub fn told(p: f64) -> f64 {
     p.clamp(f64::MIN_POSITIVE, 1.0)
 }
 
-/// Schwarz's criterion, up to a constant, of a model of so many numbers that leaves `rss` of so
-/// many readings (Annals of Statistics 6, 1978, 461-464): lower is better. All that is compared
-/// is of the same readings.
-pub fn schwarz(rss: f64, readings: f64, numbers: f64) -> f64 {
-    readings * (rss / readings).max(f64::MIN_POSITIVE).ln() + numbers * readings.ln()
-}
-
 /// The tail of Fisher's F with the degrees of freedom of its two variances.
 pub fn fisher_tail(ratio: f64, [above, below]: [f64; 2]) -> Option<f64> {
     Some(FisherSnedecor::new(above, below).ok()?.sf(number(ratio)?))
@@ -43,14 +36,6 @@ fn number(statistic: f64) -> Option<f64> {
     (!statistic.is_nan()).then(|| statistic.clamp(-LARGEST, LARGEST))
 }
 
-/// The square of a standard normal variate that is as rare as the square of one of
-/// Student's with so many degrees of freedom (Wallace, Annals of Mathematical
-/// Statistics 30, 1959, 1121-1130): what is held against a variance that few
-/// readings gave becomes as if it had been known.
-pub fn as_normal(square: f64, freedom: f64) -> f64 {
-    ((8.0 * freedom + 1.0) / (8.0 * freedom + 3.0)).powi(2) * freedom * (square / freedom).ln_1p()
-}
-
 /// A standard normal variate (Box and Muller, Annals of Mathematical Statistics 29, 1958,
 /// 610-611), of two uniform ones.
 pub fn normal(random: &mut ChaCha8Rng) -> f64 {
@@ -62,17 +47,6 @@ pub fn normal(random: &mut ChaCha8Rng) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn tails_of_student_are_those_of_a_normal_variate() {
-        for freedom in [5.0, 8.0, 30.0, 1e6] {
-            for t in [1.0_f64, 3.0, 5.0] {
-                let normal = chi_square_tail(as_normal(t * t, freedom), 1.0).expect("a tail");
-                let ratio = normal / (2.0 * student_tail(t, freedom).expect("a tail"));
-                assert!((ratio - 1.0).abs() < 0.1, "{ratio} at {t} with {freedom}");
-            }
-        }
-    }
 
     /// The quantiles of tables.
     #[test]

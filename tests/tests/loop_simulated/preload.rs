@@ -2,7 +2,7 @@
 //! on the links, and its gears act on all that they carry; the description knows the masses.
 
 use robstiff::Effect;
-use robstiff_identify::trace::{Trace, Verdict};
+use robstiff_identify::trace::{EffectParameter, Trace, Verdict};
 use robstiff_robots::{Description, Link};
 use robstiff_tests::simulator::{Hidden, Scenario, six_axis};
 
@@ -10,6 +10,9 @@ use crate::bench::{assert_most, names_all, plan, trace_files};
 
 /// Standard deviations that an estimate may be from the truth.
 const FEW: f64 = 4.0;
+
+/// The part of itself that a knee may be from the truth.
+const CHOSEN: f64 = 0.1;
 
 const SEEDS: std::ops::Range<u64> = 800..806;
 
@@ -48,8 +51,10 @@ fn a_gear_that_hardens_is_found_under_its_preload() {
     assert_most("hardening under a declared preload", 5, &traces, |_, trace| {
         let near = |name: &str, truth: f64| {
             let parameters = trace.effects.iter().flat_map(|named| &named.effect.parameters);
-            let own = parameters.filter(|parameter| parameter.name == name);
-            own.map(|own| (own.value - truth).abs() / own.std.unwrap_or(0.0)).fold(0.0, f64::max) < FEW
+            let mut own = parameters.filter(|parameter| parameter.name == name);
+            // A knee is chosen from a grid that is made finer, and has no standard deviation.
+            let within = |own: &EffectParameter| own.std.map_or(CHOSEN * truth, |std| FEW * std);
+            own.all(|own| (own.value - truth).abs() < within(own))
         };
         trace.verdict == Verdict::Explained
             && names_all(trace, &[HARDENS])
@@ -65,25 +70,23 @@ fn backlash_is_found_where_some_loads_take_the_preload_off() {
     assert_most("backlash under a declared preload", 4, &traces, |_, trace| names_all(trace, &[backlash]));
 }
 
-/// Where the description knows the masses and does not say that gears carry them, tracing
-/// finds that out with the curve.
-#[test]
-fn the_preload_is_found_with_the_curve() {
-    let traces = traces(&[SAG], &HARDENS.into());
-    assert_most("hardening under a preload that is not declared", 5, &traces, |_, trace| {
-        let preloaded = trace.description.effects.contains(&PRELOAD);
-        trace.verdict == Verdict::Explained && names_all(trace, &[HARDENS, PRELOAD]) && preloaded
+/// A preload that the description does not declare is in no candidate. Nothing else of the arm than the gear
+/// itself is named for it, and never as the whole truth.
+fn is_left_open(what: &str, hidden: &Hidden, kind: &str) {
+    assert_most(what, 6, &traces(&[SAG], hidden), |_, trace| {
+        let of_arm = trace.effects.iter().filter(|named| !named.effect.is_of_rig());
+        trace.verdict != Verdict::Explained && of_arm.map(|named| named.effect.kind()).all(|named| named == kind)
     });
 }
 
-/// Of backlash that few loads reach there is little to see, but it is not told as something
-/// else.
 #[test]
-fn backlash_under_a_preload_that_is_not_declared_is_no_slip() {
-    let traces = traces(&[SAG], &Hidden::LostMotion { joint: 2, gap: 4e-4, knee: 120.0 });
-    assert_most("backlash under a preload that is not declared", 4, &traces, |_, trace| {
-        trace.effects.iter().any(|named| named.effect.kind() == "lost_motion")
-    });
+fn hardening_under_a_preload_that_is_not_declared_is_left_open() {
+    is_left_open("hardening", &HARDENS.into(), "stiffness_nonlinearity");
+}
+
+#[test]
+fn backlash_under_a_preload_that_is_not_declared_is_left_open() {
+    is_left_open("backlash", &Hidden::LostMotion { joint: 2, gap: 4e-4, knee: 120.0 }, "lost_motion");
 }
 
 #[test]

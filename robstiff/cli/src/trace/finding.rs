@@ -14,7 +14,9 @@ use crate::text::{and, change_of_error, count, decimals, fine_micrometres};
 /// The finding in one sentence, without its full stop.
 pub fn headline(trace: &Trace, campaign: &Campaign) -> String {
     let Terms { unseen: [_, unseen], unit, .. } = Terms::of(campaign);
-    let [before, after] = [trace.identified.holdout_rms, trace.after.holdout_rms];
+    let [declared, identified, after] = [trace.declared, trace.identified, trace.after].map(|misfit| misfit.holdout_rms);
+    // What is a number of the table as well is fitted either way, and shows against the table as declared.
+    let before = if after < identified || declared < after { identified } else { declared };
     let remain = |rms: f64| format!("{} {unit}", fine_micrometres(rms));
     match trace.verdict {
         Verdict::Adequate => {
@@ -22,7 +24,7 @@ pub fn headline(trace: &Trace, campaign: &Campaign) -> String {
                 (Data::Position(_), _) | (_, Some(_)) => "the description's numbers, fitted again, predict",
                 _ => "identified joints predict",
             };
-            format!("Nothing is missing: {what} unseen {unseen} to {}", remain(before))
+            format!("Nothing is missing: {what} unseen {unseen} to {}", remain(identified))
         }
         Verdict::Explained | Verdict::Partial => format!(
             "{}; with {} the error on unseen {unseen} {} {unit}{}",

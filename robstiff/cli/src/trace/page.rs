@@ -133,8 +133,9 @@ fn certain(trace: &Trace, (p, recurs): (f64, f64), class: &[(String, f64)]) -> S
         true => format!("    {}\n", certainty(p, recurs)),
         false => format!("    probability {}\n", probability(p)),
     };
-    if class.len() > 1 {
-        page += &format!("    these data cannot tell it from {}\n", alternatives(class));
+    let others = alternatives(class);
+    if !others.is_empty() {
+        page += &format!("    these data cannot tell it from {others}\n");
     }
     page
 }

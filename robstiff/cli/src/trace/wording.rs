@@ -2,7 +2,7 @@
 
 use robstiff::JointKind;
 use robstiff_identify::campaign::{Campaign, Data};
-use robstiff_identify::trace::{EffectParameter, Estimate, Found, NamedEffect, NoiseSource, Proposal, Trace, Verdict};
+use robstiff_identify::trace::{EffectParameter, Estimate, Found, NamedEffect, NoiseSource, Proposal, SUSPECTED, Trace, Verdict};
 use robstiff_robots::{Description, Effect, Joint};
 
 use crate::report::terms::Terms;
@@ -39,11 +39,11 @@ pub fn certainty(p: f64, recurs: f64) -> String {
     format!("probability {}, back in {} of the searches", probability(p), share(recurs))
 }
 
-/// What the data cannot tell an effect from: all members of its class but itself, in words, each with its
-/// probability.
+/// What the data cannot tell an effect from: the members of its class but itself that are likely enough to
+/// be suspected, in words, each with its probability.
 pub fn alternatives(class: &[(String, f64)]) -> String {
     let words = |(name, p): &(String, f64)| format!("{} ({})", spoken(name), probability(*p));
-    let words: Vec<String> = class.iter().skip(1).map(words).collect();
+    let words: Vec<String> = class.iter().skip(1).filter(|(_, p)| *p >= SUSPECTED).map(words).collect();
     match &words[..] {
         [start @ .., last] if !start.is_empty() => format!("{} or {last}", start.join(", ")),
         _ => words.concat(),
@@ -158,16 +158,16 @@ mod tests {
     }
 
     #[test]
-    fn alternatives_are_all_but_the_first() {
+    fn alternatives_are_the_likely_ones_but_the_first() {
         let class = |names: &[&str]| -> Vec<(String, f64)> {
-            names.iter().zip([0.7, 0.2, 0.1]).map(|(name, p)| ((*name).to_owned(), p)).collect()
+            names.iter().zip([0.7, 0.2, 0.06, 0.04]).map(|(name, p)| ((*name).to_owned(), p)).collect()
         };
-        let names = ["lost_motion@joint 1", "stiffness_nonlinearity@joint 1", "lever_arm@rig"];
+        let names = ["lost_motion@joint 1", "stiffness_nonlinearity@joint 1", "lever_arm@rig", "creep@joint 2"];
         assert_eq!(alternatives(&class(&names[..1])), "");
         assert_eq!(alternatives(&class(&names[..2])), "stiffness nonlinearity of joint 1 (20 %)");
         assert_eq!(
             alternatives(&class(&names)),
-            "stiffness nonlinearity of joint 1 (20 %) or lever arm (measurement) (10 %)"
+            "stiffness nonlinearity of joint 1 (20 %) or lever arm (measurement) (6 %)"
         );
     }
 }

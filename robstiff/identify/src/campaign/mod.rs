@@ -41,7 +41,6 @@ use std::string::String;
 use std::vec::Vec;
 
 pub(crate) use beyond::told_length;
-pub(crate) use clock::apart;
 pub use joints::{Column, JointTable};
 use robstiff_robots::Description;
 pub use robstiff_robots::ReadError;

@@ -25,14 +25,6 @@ pub(crate) fn step(readings: impl Iterator<Item = f64> + Clone) -> Option<f64> {
 }
 
 impl Displacements {
-    /// Whether displacements are read in steps so wide that noise of this variance (m^2), of
-    /// one reading, does not take them from one to the next: more than twice its sigma. Rows
-    /// that are alike are then rounded alike, and small readings less than large ones, which
-    /// is no sign of the arm's.
-    pub(crate) fn is_coarse(&self, variance: f64) -> bool {
-        let readings = self.rows.iter().flat_map(|row| row.displacement);
-        step(readings).is_some_and(|step| step * step > 4.0 * variance)
-    }
 }
 
 impl Campaign {

@@ -52,7 +52,7 @@ pub use baseline::Visibility;
 pub use clamped::without_laws;
 pub use covariance::{Basis, Covariance};
 pub use encoders::EncodersRead;
-pub use misread::misread;
+pub use misread::{Misread, misread};
 pub use positions::Prepared as PreparedPositions;
 pub use predict::{PredictedRow, Prediction, predict};
 pub use prepare::noise_not_used;
@@ -250,15 +250,6 @@ pub fn identify(campaign: &Campaign) -> Result<Identification, Error> {
     match scale::other_unit(campaign, &found.estimates) {
         Some(why) => Err(Error::OtherUnit(why)),
         None => Ok(found),
-    }
-}
-
-/// Why nothing can be made of a campaign that [`identify`] refuses for a unit that was taken for
-/// another.
-pub(crate) fn in_other_unit(campaign: &Campaign) -> Option<String> {
-    match identify(campaign) {
-        Err(Error::OtherUnit(why)) => Some(why),
-        _ => None,
     }
 }
 

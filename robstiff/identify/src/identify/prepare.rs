@@ -25,8 +25,6 @@ use crate::words::micrometres;
 
 /// A campaign made ready for regressions.
 pub struct Prepared<'c> {
-    /// The description as declared.
-    pub description: &'c Description,
     /// The rows of the table.
     pub data: &'c Displacements,
     /// The rows on the robot.
@@ -94,15 +92,6 @@ pub fn noise_not_used(campaign: &Campaign, (noise, source): (f64, NoiseSource)) 
 }
 
 impl<'c> Prepared<'c> {
-    /// Evaluates the robot on the campaign and fits the description's own
-    /// numbers.
-    ///
-    /// # Errors
-    /// A campaign of another kind, or one that sees none of the numbers.
-    pub fn new(campaign: &'c Campaign) -> Result<Self, Error> {
-        Self::of(campaign, false)
-    }
-
     /// The same without the rows that the rest of the campaign contradicts, their load above
     /// all. A trace has no part in this: it weighs rows and deletes none.
     ///
@@ -144,7 +133,6 @@ impl<'c> Prepared<'c> {
         let weighed = covariance.reading().is_some() || (noise.displacement.is_some() && noise.rotation.is_some());
         let mut prepared = Self {
             data,
-            description,
             correction: DVector::zeros(samples.length()),
             values: own.iter().map(|number| number.value).collect(),
             visibility: std::vec![Visibility::Seen; own.len()],
@@ -230,11 +218,6 @@ impl<'c> Prepared<'c> {
             values[column] = value;
         }
         values
-    }
-
-    /// The signs of the description's numbers, in order.
-    pub fn signs(&self) -> Vec<Sign> {
-        self.own.iter().map(|number| number.sign).collect()
     }
 
     /// The regression with the description's columns. What numbers that are

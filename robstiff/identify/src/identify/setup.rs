@@ -7,7 +7,7 @@ use std::vec;
 use std::vec::Vec;
 
 use nalgebra::{Matrix3, Rotation3, Vector3, Vector6};
-use robstiff_robots::{Description, JointKind};
+use robstiff_robots::Description;
 
 use crate::campaign::{Displacements, Frame};
 
@@ -144,14 +144,5 @@ impl Setup {
             Frame::Base => turn,
             Frame::Tool => declared * turn * tool.transpose(),
         }
-    }
-}
-
-/// The entry of a row of the table, `[theta, d, a, alpha]`, that the joint's
-/// coordinate adds to.
-pub fn coordinate_entry(kind: JointKind) -> usize {
-    match kind {
-        JointKind::Revolute => 0,
-        JointKind::Prismatic => 1,
     }
 }

@@ -6,7 +6,7 @@ use nalgebra::{DVector, Vector3, Vector6};
 
 use super::column::Column;
 use super::covariance::Covariance;
-use super::noise::repetitions;
+use super::covariance::contrasts::Level;
 use super::samples::Samples;
 use super::second_order::beyond_linear;
 use super::*;
@@ -298,7 +298,7 @@ fn repetitions_give_the_noise() {
     let covariance = Covariance::estimate(&samples, Frame::Base, Noise::default(), |_| true);
     let without = |left_out: &[usize]| {
         let left_out = left_out.to_vec();
-        repetitions(&samples, &covariance, |_| true, move |row| left_out.contains(&row))
+        covariance.pure_error(&samples, Level::Repeated, |_| true, move |row| left_out.contains(&row))
     };
     let found = without(&[]);
     assert_eq!((found.freedom, without(&[3, 34, 40]).freedom), (90, 81));

@@ -25,13 +25,6 @@ pub fn reading_of(shared: f64) -> f64 {
     (0.5 * (1.0 + shared)).sqrt()
 }
 
-/// Whitens stacked rows in place. Row `i` of the campaign holds the rows
-/// `i * axes .. (i + 1) * axes` of every column, and belongs to
-/// `visits[i]`; each axis is a reading of its own. `shared` is `lambda`.
-pub fn whiten(stacked: &mut DMatrix<f64>, visits: &[usize], axes: usize, shared: f64) {
-    ByVisit::new(visits, shared).whiten(stacked, 0, axes);
-}
-
 /// The rows of each visit, and what whitening takes from them: a whitening that
 /// is done often.
 #[derive(Clone, Debug)]
@@ -89,7 +82,7 @@ mod tests {
                 f64::from(u8::from(i == j)) + shared * f64::from(u8::from(visits[i] == visits[j]))
             });
             let mut whitener = DMatrix::identity(rows, rows);
-            whiten(&mut whitener, &visits, 1, shared);
+            ByVisit::new(&visits, shared).whiten(&mut whitener, 0, 1);
             let inverse = covariance.try_inverse().expect("positive definite");
             assert!((whitener.transpose() * &whitener - inverse).amax() < 1e-14);
         }
@@ -98,7 +91,7 @@ mod tests {
     #[test]
     fn axes_do_not_mix() {
         let mut stacked = DMatrix::from_column_slice(6, 1, &[1.0, 10.0, 100.0, 3.0, 30.0, 300.0]);
-        whiten(&mut stacked, &[0, 0], 3, 1.0);
+        ByVisit::new(&[0, 0], 1.0).whiten(&mut stacked, 0, 3);
         for axis in 0..3 {
             let scale = 10.0_f64.powi(axis);
             let share = mean_share(2, 1.0) * 2.0 * scale;

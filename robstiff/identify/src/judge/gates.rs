@@ -51,16 +51,8 @@ pub struct Replaced {
 pub struct Judgement {
     /// The classes, in the order of the best set.
     pub classes: Vec<Weighed>,
-    /// The probability that nothing is there.
-    pub nothing: f64,
-    /// By how much the error on unseen poses falls with the whole search, against the description's own
-    /// numbers alone (1). Outlying rows have no part: they are as far off either way.
-    pub falls: f64,
     /// The probability that a discrepancy is left.
     pub discrepancy: f64,
-    /// The share of what is beyond the noise that the best set accounts for; of a campaign in which a
-    /// discrepancy is left.
-    pub accounts: f64,
 }
 
 /// Weighs the classes of what was found.
@@ -102,7 +94,7 @@ pub fn weigh(engine: &Engine<'_>, found: &Found, nested: &Nested, seed: u64) -> 
         weighed.why_not = why_not(&weighed, (found, engine.scene.what), falls, (discrepancy, accounts));
         weighed
     });
-    Judgement { classes: weighed.collect(), nothing: by.of_none(), falls, discrepancy, accounts }
+    Judgement { classes: weighed.collect(), discrepancy }
 }
 
 /// What keeps a class from being named.

@@ -53,9 +53,6 @@ pub const FEWEST_POSES: usize = 8;
 /// A model that leaves more than the known noise by this factor does not account for the readings.
 pub const ABOVE_NOISE: f64 = 1.25;
 
-/// A set without effects that is likelier than this says that nothing is missing.
-pub const NOTHING: f64 = 0.5;
-
 /// An effect that is less likely than this is not even suspected: odds of nineteen to one against it.
 pub const SUSPECTED: f64 = 0.05;
 

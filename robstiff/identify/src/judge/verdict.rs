@@ -40,8 +40,6 @@ pub struct Evidence<'a> {
     pub suspected: &'a [String],
     /// What has no name and looks like this, each as a noun for a sentence.
     pub looks_like: &'a [String],
-    /// The probability that nothing is there.
-    pub nothing: f64,
     /// The probability that a discrepancy is left.
     pub discrepancy: f64,
     /// What the model leaves over the noise, where that is known independently of the model.
@@ -88,7 +86,7 @@ pub fn verdict(of: &Evidence<'_>) -> (Verdict, String) {
         }
         (_, None) if of.over_noise.is_none() => (
             Verdict::Partial,
-            "the noise of the readings is known from the model only: declare it, or repeat loads within a visit".into(),
+            "the noise is known from the model only: declare it, or repeat loads within a visit".into(),
         ),
         _ => (Verdict::Explained, "what the named effects leave looks like noise".into()),
     }
@@ -103,7 +101,6 @@ mod tests {
         outliers: false,
         suspected: &[],
         looks_like: &[],
-        nothing: 1.0,
         discrepancy: 0.0,
         over_noise: Some(OverNoise { ratio: 1.0, by_chance: 1.0 }),
     };

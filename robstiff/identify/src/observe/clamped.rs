@@ -1,7 +1,6 @@
 //! Axes that are loaded one at a time, those before clamped.
 
 use nalgebra::{DMatrix, DVector, Vector3};
-use robstiff::JointKind;
 
 use super::{Observation, Readings};
 use crate::campaign::{ClampedRow, Frame};
@@ -48,11 +47,6 @@ impl<'c> Clamped<'c> {
         };
         let rig = Rig::declared((Frame::Base, [0.0; 3]), (Frame::Base, [0.0; 3]));
         Self { rows, readings, world: World { arm, rig }, stand, axes, q }
-    }
-
-    /// The kind of a joint (from 1).
-    pub fn kind(&self, joint: usize) -> JointKind {
-        self.world.arm.rows[joint - 1].kind
     }
 
     /// The rows of an axis, in order.

@@ -3,7 +3,7 @@
 use std::string::String;
 use std::vec::Vec;
 
-use crate::trace::Trace;
+use crate::trace::{SUSPECTED, Trace};
 
 /// Rivals of one effect beyond these many are not followed: all pairs count,
 /// and the best fitting are the likely ones.
@@ -111,12 +111,16 @@ pub fn pairs(rivals: &[(String, Rival)], core: &[usize]) -> Vec<Contest> {
     rivals.iter().enumerate().flat_map(with_later).collect()
 }
 
-/// The groups of a trace: each class of effects, named or suspected. One of a single member has no
-/// rival.
+/// The groups of a trace: each class of effects, named or suspected, without the members that are not
+/// even suspected. One of a single member has no rival.
 pub fn groups(trace: &Trace) -> Vec<Group> {
+    let likely = |class: &[(String, f64)]| -> Vec<String> {
+        let rivals = class.iter().skip(1).filter(|(_, probability)| *probability >= SUSPECTED);
+        class.iter().take(1).chain(rivals).map(|(name, _)| name.clone()).take(MOST).collect()
+    };
     let group = |named: Option<usize>, class: &[(String, f64)]| Group {
         named,
-        names: class.iter().map(|(name, _)| name.clone()).take(MOST).collect(),
+        names: likely(class),
     };
     let named = trace.effects.iter().enumerate().map(|(k, named)| group(Some(k), &named.class));
     let suspected = trace.suspected.iter().map(|of| group(None, &of.class));

@@ -47,11 +47,6 @@ impl Factor {
         Some(Self { size, rows })
     }
 
-    /// The number of rows.
-    pub fn size(&self) -> usize {
-        self.size
-    }
-
     fn row(&self, i: usize) -> &[f64] {
         &self.rows[i * self.size..i * self.size + i + 1]
     }

@@ -60,11 +60,6 @@ impl ByCandidate {
         self.sets.iter().filter(|(set, _)| has(set)).map(|(_, p)| p).sum()
     }
 
-    /// The probability that nothing is there.
-    pub fn of_none(&self) -> f64 {
-        self.sets.iter().filter(|(set, _)| set.is_empty()).map(|(_, p)| p).sum()
-    }
-
     fn of_set(&self, set: &[usize]) -> f64 {
         self.sets.iter().find(|(of, _)| of == set).map_or(0.0, |(_, p)| *p)
     }

@@ -380,11 +380,6 @@ impl<'c> Engine<'c> {
         Self { sizes: self.sizes, ..fresh }
     }
 
-    /// Searches, from the campaign as declared; `progress` hears what goes on.
-    pub fn run(&mut self, progress: &dyn Fn(&str)) -> Option<Found> {
-        Some(self.run_from_alone(progress)?.0)
-    }
-
     /// The same, with what the description's own numbers alone leave of every row.
     pub fn run_from_alone(&mut self, progress: &dyn Fn(&str)) -> Option<(Found, DVector<f64>)> {
         progress("fitting the description's own numbers");

@@ -9,7 +9,7 @@ use super::always::BLOCK;
 use crate::model::{Sign, Size};
 use crate::observe::Readings;
 use crate::regression::evidence::{Start, fit, reduced};
-use crate::regression::{Fit, Gram, Grams, NoisePrior, Prior, Scales};
+use crate::regression::{Fit, Gram, NoisePrior, Prior, Scales};
 
 /// Forms that are there together, by their numbers in the layout, in ascending order.
 pub type Set = Vec<usize>;
@@ -299,9 +299,4 @@ pub fn moves(readings: &Readings, columns: &nalgebra::DMatrix<f64>, training: &[
         (sum / (rows.len().max(1) * readings.width) as f64).sqrt()
     };
     (0..columns.ncols()).map(of).collect()
-}
-
-/// The totals of Gram matrices.
-pub fn totals(grams: &Grams) -> Vec<Gram> {
-    grams.total.clone()
 }

@@ -54,10 +54,6 @@ impl Visited {
         let sum: f64 = ranked.iter().map(|(_, judged)| (judged.score - best).exp()).sum();
         ranked.into_iter().map(|(set, judged)| (set, (judged.score - best).exp() / sum)).collect()
     }
-
-    fn score(&self, set: &Set) -> f64 {
-        self.sets.get(set).map_or(f64::NEG_INFINITY, |judged| judged.score)
-    }
 }
 
 /// Searches, with some set to begin with beside the empty one.

@@ -35,6 +35,7 @@ pub use written::is_offered_as_change;
 use crate::campaign::Campaign;
 pub use crate::effects::{Number as EffectParameter, Place};
 use crate::identify::Error;
+pub use crate::judge::thresholds::SUSPECTED;
 use crate::judge::thresholds::{DISTINCT, FEWEST_POSES, FOLDS};
 pub use crate::judge::verdict::Verdict;
 use crate::judge::{gates, verdict};
@@ -275,7 +276,6 @@ fn concluded(
         outliers,
         suspected,
         looks_like,
-        nothing: judgement.nothing,
         discrepancy: judgement.discrepancy,
         over_noise,
     })

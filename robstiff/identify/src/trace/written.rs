@@ -1,5 +1,7 @@
 //! What goes into the description.
 
+use std::slice;
+
 use robstiff_robots::effect::physics::{Parameter, Range};
 use robstiff_robots::{Description, Effect};
 
@@ -22,6 +24,14 @@ pub fn described(
     (effects, compliance): (&[Found], &[f64]),
 ) -> Result<Description, Error> {
     let mut description = with_values(&campaign.robot, own, estimates);
+    if !is_readable(&description) {
+        // A number of an effect that the readings hardly show may be fitted beyond what it can be; it stays as declared.
+        let one = |description: Description, (own, estimate): (&Declared, &Estimate)| {
+            let with = with_values(&description, slice::from_ref(own), slice::from_ref(estimate));
+            if is_readable(&with) { with } else { description }
+        };
+        description = own.iter().zip(estimates).fold(campaign.robot.clone(), one);
+    }
     for (joint, by) in description.joints.iter_mut().zip(table) {
         for (number, by) in [&mut joint.theta, &mut joint.d, &mut joint.a, &mut joint.alpha].into_iter().zip(by) {
             *number += by;

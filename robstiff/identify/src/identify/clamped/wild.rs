@@ -57,26 +57,6 @@ impl Room {
         }
     }
 
-    /// None, of any axis.
-    pub fn none() -> Self {
-        Self { all: 0, of_axis: Vec::new() }
-    }
-
-    /// What is left of it beside rows that are outlying, each told by its axis.
-    pub fn beside(&self, wild: impl IntoIterator<Item = usize>) -> Self {
-        let mut left = self.clone();
-        for axis in wild {
-            left.all = left.all.saturating_sub(1);
-            left.of_axis[axis - 1] = left.of_axis[axis - 1].saturating_sub(1);
-        }
-        left
-    }
-
-    /// Whether one more row of an axis may be outlying.
-    pub fn is_left(&self, axis: usize) -> bool {
-        self.all > 0 && self.of_axis[axis - 1] > 0
-    }
-
     /// An axis of which more of some rows are outlying than may be.
     fn exceeded(&self, rows: &[ClampedRow], wild: &[usize]) -> Option<usize> {
         let count = |axis: usize| wild.iter().filter(|&&row| rows[row].axis == axis).count();

@@ -9,7 +9,6 @@ pub mod contrasts;
 pub mod encoders;
 mod estimated;
 mod estimation;
-pub mod heavy;
 pub mod outliers;
 pub mod reml;
 pub mod tails;
@@ -209,27 +208,6 @@ impl Covariance {
         }
     }
 
-    /// The same of other rows, in visits of their own, of what is read at the tool.
-    pub(crate) fn whitener_of(&self, rows: &[Sample], visits: &[usize]) -> Whitener {
-        Whitener {
-            turns: self.turns.as_ref().map(|_| rows.iter().map(to_tool).collect()),
-            by_visit: whitening::ByVisit::new(visits, self.shared),
-            scale: self.scale(&self.own),
-            rows: rows.len(),
-            encoders: None,
-        }
-    }
-
-    /// With rotations, of which the noise of a displacement reading is so many times that of
-    /// one (m/rad).
-    #[must_use]
-    pub(crate) fn with_rotations(mut self, weight: f64) -> Self {
-        let own = self.reference(0..3) / whitening::reading_of(self.shared) / weight;
-        self.own.truncate(3);
-        self.own.extend([own; 3]);
-        self
-    }
-
     /// What brings readings that have so much noise to themselves to the unit of displacements.
     fn scale(&self, own: &[f64]) -> Vec<f64> {
         let reference = self.reference(0..3);
@@ -240,16 +218,6 @@ impl Covariance {
     /// `factor`.
     pub(crate) fn weigh_rotations(&mut self, factor: f64) {
         self.own.iter_mut().skip(3).for_each(|own| *own /= factor);
-    }
-
-    /// The variance of each axis over the mean of its kind, displacements or
-    /// rotations.
-    pub(crate) fn shares_of_axes(&self) -> Vec<f64> {
-        let of_kind = |own: &[f64]| {
-            let mean = own.iter().map(|own| own * own).sum::<f64>() / own.len() as f64;
-            own.iter().map(|own| own * own / mean).collect::<Vec<f64>>()
-        };
-        self.own.chunks(3).flat_map(of_kind).collect()
     }
 
     /// The root mean square of the readings' sigma over some axes.

@@ -19,9 +19,7 @@ use std::vec::Vec;
 
 pub use self::displacements::in_displacements;
 use self::mistakes::Mistake;
-#[cfg(test)]
-pub use self::mistakes::of_displacements;
-pub use self::positions::{NOISIEST, apart, from_middle, in_positions};
+pub use self::positions::{apart, from_middle, in_positions};
 use super::{Identification, NoiseSource};
 use crate::campaign::{Campaign, Data};
 use crate::words::micrometres;
@@ -51,29 +49,33 @@ pub struct Misread {
     pub left: f64,
 }
 
-/// What is the matter, in a sentence, where the files of a campaign say something else than what
-/// was measured: that with one mistake undone far less is left than `found` leaves.
-pub fn misread(campaign: &Campaign, found: &Identification) -> Option<String> {
+/// What is the matter where the files of a campaign say something else than what was measured: that
+/// with one mistake undone far less is left than `found` leaves.
+pub fn misread(campaign: &Campaign, found: &Identification) -> Option<Misread> {
     let rms = found.rms?;
     let is_known = |source: NoiseSource| source != NoiseSource::Residuals;
     if found.noise.is_some_and(|(noise, source)| is_known(source) && rms <= NOISE * noise) {
         return None;
     }
-    let misread = match &campaign.data {
+    match &campaign.data {
         Data::Displacement(data) => {
             in_displacements(&campaign.robot, data, |row| !found.left_out.contains(&data.rows[row].line), rms, FAR_LESS)
         }
         Data::Position(data) => in_positions(&campaign.robot, data, rms),
         Data::Clamped(_) => None,
-    }?;
-    Some(format!(
-        "The files may say something else than what was measured: {}, and as the files are {} stay unaccounted for.",
-        misread.said(),
-        micrometres(rms)
-    ))
+    }
 }
 
 impl Misread {
+    /// What is the matter, in a sentence, where as the files are `rms` is left (m).
+    pub fn sentence(&self, rms: f64) -> String {
+        format!(
+            "The files may say something else than what was measured: {}, and as the files are {} stay unaccounted for.",
+            self.said(),
+            micrometres(rms)
+        )
+    }
+
     /// Which mistakes may have been made, and what is left with that undone.
     pub fn said(&self) -> String {
         format!("{}; with that undone {} are left", self.mistakes.join(", or "), micrometres(self.left))

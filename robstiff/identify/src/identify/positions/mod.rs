@@ -180,12 +180,6 @@ fn confounded() -> Error {
     Error::NotShown(String::from("these positions do not tell the compliances from each other"))
 }
 
-/// Of a covariance, the part without where the robot stands.
-pub fn of_numbers(covariance: &DMatrix<f64>) -> DMatrix<f64> {
-    let count = covariance.nrows() - STANDS;
-    covariance.view((STANDS, STANDS), (count, count)).into_owned()
-}
-
 /// What a state leaves of the readings, stacked (m).
 pub fn residuals(regression: &Regression<'_>, state: &State) -> DVector<f64> {
     let points = state.model(&regression.start, &regression.numbers).points(regression.data);
