@@ -171,9 +171,7 @@ pub fn run(drawn: &Drawn) -> Came {
     let trace = trace(&campaign, &Options::default(), &|_| {}).unwrap_or_else(|problem| panic!("{problem}"));
     let told = Told::of(&trace).names;
     let hidden = &drawn.positions.hidden;
-    let is_one = |name: &Name, hidden: &Hidden| {
-        name.name == hidden.name() || name.same_as.contains(&hidden.name())
-    };
+    let is_one = |name: &Name, hidden: &Hidden| name.name == hidden.name() || name.same_as.contains(&hidden.name());
     let all = hidden.iter().all(|hidden| told.iter().any(|name| is_one(name, hidden)));
     let only = told.iter().all(|name| hidden.iter().any(|hidden| is_one(name, hidden)));
     let whole = if hidden.is_empty() { Verdict::Adequate } else { Verdict::Explained };

@@ -30,8 +30,7 @@ static FOUND: LazyLock<Trace> =
 const NOISE: f64 = 1e-5;
 
 fn traced(campaign: &Campaign) -> Trace {
-    trace(campaign, &Options::default(), &|_| {})
-        .unwrap_or_else(|problem| panic!("{problem}"))
+    trace(campaign, &Options::default(), &|_| {}).unwrap_or_else(|problem| panic!("{problem}"))
 }
 
 fn names(trace: &Trace) -> Vec<String> {
@@ -113,7 +112,10 @@ fn a_true_effect_comes_back() {
     let found = trace(&campaign, &Options { folds: 4, ..Options::default() }, &|_| {}).expect("it can be traced");
     let again = &found.nested;
     assert_eq!(again.folds, 4);
-    assert_eq!(again.names.first().map(|(name, share)| (name.as_str(), *share)), Some(("transverse_compliance@joint 3", 1.0)));
+    assert_eq!(
+        again.names.first().map(|(name, share)| (name.as_str(), *share)),
+        Some(("transverse_compliance@joint 3", 1.0))
+    );
     // What it leaves is noise, little more of it than in the fit.
     assert!((1.0..1.3).contains(&(again.rms / (NOISE * 2_f64.sqrt()))), "{again:?}");
     assert!(again.identified_rms > 2.0 * again.rms, "{again:?}");

@@ -17,8 +17,7 @@ use robstiff_tests::simulator::{DhColumn, Follows, Hidden, Outside, Positions, f
 const RUNS: u64 = 6;
 
 fn traced(campaign: &Campaign) -> Trace {
-    trace(campaign, &Options::default(), &|_| {})
-        .unwrap_or_else(|problem| panic!("{problem}"))
+    trace(campaign, &Options::default(), &|_| {}).unwrap_or_else(|problem| panic!("{problem}"))
 }
 
 /// Both arms in turn, other compliances in every run.
@@ -205,9 +204,7 @@ fn faults_of_the_rig_are_named_and_not_written() {
     let wild = assert_named("outliers@rig", 740, |positions, _| {
         positions.wild = vec![(7, [0.0, 1e-3, 0.0]), (31, [-2e-3, 0.0, 5e-4])];
     });
-    for (_, trace) in
-        slips.iter().chain(&moved).chain(&grows).chain(&settles).chain(&knocked).chain(&wild)
-    {
+    for (_, trace) in slips.iter().chain(&moved).chain(&grows).chain(&settles).chain(&knocked).chain(&wild) {
         assert!(trace.description.effects.is_empty());
     }
     for (_, trace) in &grows {
@@ -267,8 +264,10 @@ fn what_is_outside_the_catalogue_is_not_explained() {
 /// for what it looks like.
 #[test]
 fn what_has_no_name_is_told_for_what_it_looks_like() {
-    let cases =
-        [("an encoder of joint 4 with a scale of its own", [4, 4]), ("a coupling of the angles of joints 5 and 4", [5, 4])];
+    let cases = [
+        ("an encoder of joint 4 with a scale of its own", [4, 4]),
+        ("a coupling of the angles of joints 5 and 4", [5, 4]),
+    ];
     for (seed, (words, [joint, of])) in (1000..).step_by(20).zip(cases) {
         let right = (0..RUNS).filter(|&run| {
             let (positions, declared) = positions(run, seed);

@@ -9,7 +9,6 @@ use robstiff_identify::plan::{Group, Options, Outlook, Plan, plan, plan_between}
 use robstiff_identify::simulate::{Measures, Poses, Scenario, UnderPayloads, simulate};
 use robstiff_identify::trace::{self, Trace, trace};
 use robstiff_robots::Description;
-use robstiff_robots::effect::DhEntry;
 use robstiff_robots::effect::gravity_sag::GRAVITY;
 use robstiff_tests::simulator::{five_axis, six_axis};
 

@@ -37,7 +37,8 @@ fn proposes_poses_for_the_fanuc() {
     let number = |value: &Value| value.as_f64().unwrap();
     let pair = &plan["pairs"][0];
     assert!(number(&pair["separation_after"]) > 1.5 * number(&pair["separation_now"]), "{pair}");
-    assert_eq!(pair["outlook"], "separable");
+    // Ten poses like those before do not decide.
+    assert_eq!(pair["outlook"], "slow");
     let numbers = plan["numbers"].as_array().unwrap();
     assert!(numbers.iter().all(|known| number(&known["factor"]) >= 1.0));
     // The same plan as in the book.

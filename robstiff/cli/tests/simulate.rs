@@ -86,7 +86,11 @@ fn positions_are_simulated_and_traced() {
     let campaign = format!("{out}/campaign.yaml");
     let traced = inside(&folder, "traced");
     let page = succeed(&["trace", &campaign, "--out", &traced]);
-    assert!(page.contains("    joint_zero_offset@joint 3: offset = 0.0") || page.contains("    joint_zero_offset@joint 3: offset = 0.1"), "{page}");
+    assert!(
+        page.contains("    joint_zero_offset@joint 3: offset = 0.0")
+            || page.contains("    joint_zero_offset@joint 3: offset = 0.1"),
+        "{page}"
+    );
     assert!(page.contains("the error on unseen poses falls from "), "{page}");
     let rms = |robot: &str| {
         let predicted = inside(&folder, "predicted.json");

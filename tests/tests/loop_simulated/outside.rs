@@ -89,40 +89,38 @@ fn warming_of_six() {
     is_not_explained("a warming gear", &six_axis(), warm);
 }
 
-/// Two effects of joint 3 together are much like it, and leave nothing: a compliance that varies
-/// with its angle, and a periodic error of that.
+/// Effects of joint 3 together are much like it: a compliance that varies with its angle, and a periodic error of
+/// that. They may be named, but not as the whole truth.
 #[test]
-fn a_compliance_that_follows_another_joint_is_not_told_as_two_effects_of_that() {
-    looks_like(
-        &[six_axis()],
-        |_| Outside::CrossDependence { joint: 2, of: 3, cos: 0.4, sin: 0.0 },
-        "a compliance of joint 2 that changes with the angle of joint 3",
-    );
+fn a_compliance_that_follows_another_joint_is_not_the_whole_truth_as_effects_of_that() {
+    let outside = |_: &Description| Outside::CrossDependence { joint: 2, of: 3, cos: 0.4, sin: 0.0 };
+    stays_open("a compliance of joint 2 that changes with the angle of joint 3", &[six_axis()], outside, |_| true);
 }
 
 /// Loads of one sign and of the other: a drift or slip of the base, or a bias, does much the same.
 #[test]
 fn a_joint_softer_one_way_is_no_drift() {
-    looks_like(
-        &[five_axis(), six_axis()],
-        |arm| Outside::OneSided { joint: 3, added: 0.35 * arm.joints[2].compliance() },
-        "a compliance of joint 3 that depends on which way it is loaded",
-    );
+    let outside = |arm: &Description| Outside::OneSided { joint: 3, added: 0.35 * arm.joints[2].compliance() };
+    let words = "a compliance of joint 3 that depends on which way it is loaded";
+    stays_open(words, &[five_axis(), six_axis()], outside, |trace| trace.effects.is_empty());
 }
 
 /// What of the load goes with the angle of joint 1 does to that joint what a compliance that
 /// varies with its angle does, and to the others, too.
 #[test]
 fn a_load_read_otherwise_at_other_angles_is_no_compliance() {
-    looks_like(
-        &[five_axis(), six_axis()],
-        |_| Outside::GainOfAngle { joint: 1, gain: 0.06 },
-        "a load whose reading changes with the angle of joint 1",
-    );
+    let outside = |_: &Description| Outside::GainOfAngle { joint: 1, gain: 0.06 };
+    let words = "a load whose reading changes with the angle of joint 1";
+    stays_open(words, &[five_axis(), six_axis()], outside, |trace| trace.effects.is_empty());
 }
 
-/// Asserts that what is outside the catalogue is told on each arm, for what it looks like at most, without a name.
-fn looks_like(arms: &[Description], outside: impl Fn(&Description) -> Outside, words: &str) {
+/// Asserts that what is outside the catalogue is not taken for the whole truth on any arm, with names that may be.
+fn stays_open(
+    words: &str,
+    arms: &[Description],
+    outside: impl Fn(&Description) -> Outside,
+    may_be: impl Fn(&Trace) -> bool,
+) {
     for arm in arms {
         let trace = |seed| {
             let simulated = plan(arm, &[], seed).hiding(Hidden::Outside(outside(arm))).run();
@@ -130,7 +128,7 @@ fn looks_like(arms: &[Description], outside: impl Fn(&Description) -> Outside, w
         };
         let traces: Vec<(u64, Trace)> = (300..306).map(trace).collect();
         assert_most(&format!("{words} on {}", arm.name), 5, &traces, |_, trace| {
-            trace.verdict == Verdict::Unexplained && trace.effects.is_empty()
+            matches!(trace.verdict, Verdict::Unexplained | Verdict::Partial) && may_be(trace)
         });
     }
 }

@@ -60,7 +60,8 @@ fn noise_that_is_stated_too_small_is_noticed() {
 /// One load a visit, and an unloaded reading for each row: no load comes twice, so the noise is stated.
 #[test]
 fn rows_without_a_shared_reading() {
-    let own = |scenario| Scenario { ramp: vec![1.0], visits: 5, shares_unloaded: false, states_noise: true, ..scenario };
+    let own =
+        |scenario| Scenario { ramp: vec![1.0], visits: 5, shares_unloaded: false, states_noise: true, ..scenario };
     assert_most("rows of their own", 5, &campaigns(&[TILT], own, ""), |_, trace| is_found(trace));
 }
 

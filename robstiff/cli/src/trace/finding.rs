@@ -14,7 +14,8 @@ use crate::text::{and, change_of_error, count, decimals, fine_micrometres};
 /// The finding in one sentence, without its full stop.
 pub fn headline(trace: &Trace, campaign: &Campaign) -> String {
     let Terms { unseen: [_, unseen], unit, .. } = Terms::of(campaign);
-    let [declared, identified, after] = [trace.declared, trace.identified, trace.after].map(|misfit| misfit.holdout_rms);
+    let [declared, identified, after] =
+        [trace.declared, trace.identified, trace.after].map(|misfit| misfit.holdout_rms);
     // What is a number of the table as well is fitted either way, and shows against the table as declared.
     let before = if after < identified || declared < after { identified } else { declared };
     let remain = |rms: f64| format!("{} {unit}", fine_micrometres(rms));

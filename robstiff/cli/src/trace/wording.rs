@@ -2,7 +2,9 @@
 
 use robstiff::JointKind;
 use robstiff_identify::campaign::{Campaign, Data};
-use robstiff_identify::trace::{EffectParameter, Estimate, Found, NamedEffect, NoiseSource, Proposal, SUSPECTED, Trace, Verdict};
+use robstiff_identify::trace::{
+    EffectParameter, Estimate, Found, NamedEffect, NoiseSource, Proposal, SUSPECTED, Trace, Verdict,
+};
 use robstiff_robots::{Description, Effect, Joint};
 
 use crate::report::terms::Terms;

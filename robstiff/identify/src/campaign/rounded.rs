@@ -24,8 +24,7 @@ pub(crate) fn step(readings: impl Iterator<Item = f64> + Clone) -> Option<f64> {
     Some(readings.fold(0.0, common)).filter(|step| *step > FINE * largest)
 }
 
-impl Displacements {
-}
+impl Displacements {}
 
 impl Campaign {
     /// One sigma of one axis of one reading (m), where the file declares it, with what the

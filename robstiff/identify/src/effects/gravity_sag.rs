@@ -29,8 +29,5 @@ fn offer(scene: &Scene<'_>, offers: &mut Offers) {
         if turning.contains(&joint) { compliance[joint - 1] * weight.torque(at.stand, &kinds, joint - 1) } else { 0.0 }
     };
     let share = Parameter::new("share", "1", Size::Of(1.0), Term::Asides(Rc::new(of))).nonnegative();
-    offers.add(
-        Part::Robot,
-        vec![Form::new("", vec![share]).written(|v| vec![Effect::GravitySag { share: v[0] }])],
-    );
+    offers.add(Part::Robot, vec![Form::new("", vec![share]).written(|v| vec![Effect::GravitySag { share: v[0] }])]);
 }

@@ -33,8 +33,11 @@ fn offer(scene: &Scene<'_>, offers: &mut Offers) {
             let axis = ["x", "y", "z"][right];
             [
                 Form::new(format!("in the base frame, {axis} right"), others(&base, right)),
-                Form::new(format!("in the tool frame, {axis} right"), others(&tool, right))
-                    .with("tool_frame", 1.0, "1"),
+                Form::new(format!("in the tool frame, {axis} right"), others(&tool, right)).with(
+                    "tool_frame",
+                    1.0,
+                    "1",
+                ),
             ]
         });
         offers.add(Place::Rig, forms.collect());

@@ -349,8 +349,10 @@ impl Observation for Displacement<'_> {
         for (k, &which) in of.iter().enumerate() {
             let parameter = &parameters[which];
             let column = match &parameter.term {
-                Term::Spring(_) | Term::Law(..) | Term::Laws(_) => yielding(&parameter.term, &loaded, &self.sequence, &self.encoders)
-                    .map(|part| self.read(&here, &loaded, &part.gained(&gains))),
+                Term::Spring(_) | Term::Law(..) | Term::Laws(_) => {
+                    yielding(&parameter.term, &loaded, &self.sequence, &self.encoders)
+                        .map(|part| self.read(&here, &loaded, &part.gained(&gains)))
+                }
                 Term::Reading(of) => Some(self.read_directly(&**of)),
                 Term::Gain(gain) => {
                     let whole =

@@ -118,10 +118,7 @@ pub fn groups(trace: &Trace) -> Vec<Group> {
         let rivals = class.iter().skip(1).filter(|(_, probability)| *probability >= SUSPECTED);
         class.iter().take(1).chain(rivals).map(|(name, _)| name.clone()).take(MOST).collect()
     };
-    let group = |named: Option<usize>, class: &[(String, f64)]| Group {
-        named,
-        names: likely(class),
-    };
+    let group = |named: Option<usize>, class: &[(String, f64)]| Group { named, names: likely(class) };
     let named = trace.effects.iter().enumerate().map(|(k, named)| group(Some(k), &named.class));
     let suspected = trace.suspected.iter().map(|of| group(None, &of.class));
     named.chain(suspected).filter(|group| !group.names.is_empty()).collect()

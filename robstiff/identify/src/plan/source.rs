@@ -210,9 +210,8 @@ fn wanted(engine: &Engine<'_>, trace: &Trace, groups: &[Group]) -> Layout {
     let does_same = |of: &Candidate| {
         of.forms.iter().flat_map(|form| &form.same).any(|name| names.iter().any(|asked| asked == name))
     };
-    let candidates = candidates
-        .into_iter()
-        .filter(|of| names.contains(&of.name()) || has_value(&of.name()) || does_same(of));
+    let candidates =
+        candidates.into_iter().filter(|of| names.contains(&of.name()) || has_value(&of.name()) || does_same(of));
     Layout::new(parameters[..fixed].to_vec(), parameters[fixed..fixed + always].to_vec(), candidates.collect())
 }
 

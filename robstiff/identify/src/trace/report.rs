@@ -3,8 +3,8 @@
 use nalgebra::DVector;
 
 use super::basis::Basis;
-use super::case::Case;
 use super::beside;
+use super::case::Case;
 use super::corrected::corrected;
 use super::errors::{misfit, poses, rows};
 use super::estimate::estimates;
@@ -52,8 +52,7 @@ pub fn report(
         .filter(|of| of.class.probability > SUSPECTED)
         .map(|of| suspected(found, effect(of), of))
         .collect();
-    let looks_like: Vec<String> =
-        unnamed.iter().filter(|of| of.least > 0.5).map(|of| effect(of).words()).collect();
+    let looks_like: Vec<String> = unnamed.iter().filter(|of| of.least > 0.5).map(|of| effect(of).words()).collect();
     let model = corrected(case, engine, found, nested)
         .ok_or_else(|| Error::NotShown("no description fits these data".into()))?;
     let before = engine.alone(&found.layout);
