@@ -218,9 +218,9 @@ pub fn of_positions(scene: &Scene<'_>, poses: usize) -> Vec<Parameter> {
     for k in 0..3 {
         always.push(flat(["rx", "ry", "rz"][k], "rad", |world, k, by| world.rig.stand_off[0][k] += by, k));
     }
-    for k in 0..3 {
+    for (k, name) in REFLECTOR.into_iter().enumerate() {
         let term = Term::World(Rc::new(move |world: &mut World, by| world.rig.reflector[k] += by));
-        always.push(Parameter::new(REFLECTOR[k], "m", Size::Of(REFLECTOR_OFF), term));
+        always.push(Parameter::new(name, "m", Size::Of(REFLECTOR_OFF), term));
     }
     for joint in scene.joints() {
         for (number, name, unit) in TABLE.into_iter().filter(|of| of.0 != BETA || is_parallel(scene, joint)) {

@@ -103,7 +103,7 @@ impl Layout {
     pub fn stands_for(&self, form: usize, name: &str) -> bool {
         let of = &self.forms[form];
         let candidate = &self.candidates[of.candidate];
-        candidate.name() == name || candidate.forms[of.form].same.iter().any(|same| *same == name)
+        candidate.name() == name || candidate.forms[of.form].same.contains(&name)
     }
 
     /// The names of a form and of its candidate.
