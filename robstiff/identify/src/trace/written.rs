@@ -9,7 +9,7 @@ use super::estimate::{Estimate, with_values};
 use super::found::Found;
 use crate::campaign::Campaign;
 use crate::identify::Error;
-use crate::select::always::Declared;
+use crate::select::always::{Declared, Own};
 use robstiff_robots::DhEntry;
 
 /// A description with estimates, corrections of the table, and effects, which says where they are
@@ -26,11 +26,16 @@ pub fn described(
     let mut description = with_values(&campaign.robot, own, estimates);
     if !is_readable(&description) {
         // A number of an effect that the readings hardly show may be fitted beyond what it can be; it stays as declared.
-        let one = |description: Description, (own, estimate): (&Declared, &Estimate)| {
-            let with = with_values(&description, slice::from_ref(own), slice::from_ref(estimate));
-            if is_readable(&with) { with } else { description }
+        let (joints, effects): (Vec<_>, Vec<_>) =
+            own.iter().zip(estimates).partition(|(own, _)| matches!(own.what, Own::Joint(_)));
+        let with = |description: &Description, (own, estimate): (&Declared, &Estimate)| {
+            with_values(description, slice::from_ref(own), slice::from_ref(estimate))
         };
-        description = own.iter().zip(estimates).fold(campaign.robot.clone(), one);
+        let of_joints = joints.into_iter().fold(campaign.robot.clone(), |description, of| with(&description, of));
+        description = effects.into_iter().fold(of_joints, |description, of| {
+            let changed = with(&description, of);
+            if is_readable(&changed) { changed } else { description }
+        });
     }
     for (joint, by) in description.joints.iter_mut().zip(table) {
         for (number, by) in [&mut joint.theta, &mut joint.d, &mut joint.a, &mut joint.alpha].into_iter().zip(by) {
