@@ -1,11 +1,11 @@
 //! Tracing: which effects a campaign shows that a description lacks.
 //!
 //! The way of the data:
-//! 1. a [`case`] is made of the campaign: what it reads, and what it can show;
-//! 2. the [search](crate::select) weighs sets of effects by their evidence;
-//! 3. it is [repeated](crate::select::folds) without some poses, which gives the error on unseen poses;
-//! 4. each class of effects is [judged](crate::judge): named, or suspected;
-//! 5. the effects that predict go into the [description](written), as far as it takes them.
+//! 1. a case (`trace/case.rs`) is made of the campaign: what it reads, and what it can show;
+//! 2. the search (`select`) weighs sets of effects by their evidence;
+//! 3. it is repeated (`select/folds.rs`) without some poses, which gives the error on unseen poses;
+//! 4. each class of effects is judged (`judge`): named, or suspected;
+//! 5. the effects that predict go into the description (`trace/written.rs`), as far as it takes them.
 
 mod accounted;
 pub(crate) mod basis;
