@@ -84,10 +84,9 @@ pub fn verdict(of: &Evidence<'_>) -> (Verdict, String) {
         (named, None) if named > MOST_NAMES => {
             (Verdict::Partial, format!("{named} effects at once are more than these data can vouch for"))
         }
-        (_, None) if of.over_noise.is_none() => (
-            Verdict::Partial,
-            "the noise is known from the model only: declare it, or repeat loads within a visit".into(),
-        ),
+        (_, None) if of.over_noise.is_none() => {
+            (Verdict::Partial, "the noise is known from the model only: declare it, or repeat readings".into())
+        }
         _ => (Verdict::Explained, "what the named effects leave looks like noise".into()),
     }
 }

@@ -5,6 +5,7 @@ use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 use super::case::Case;
 use crate::campaign::Campaign;
+use crate::effects::What;
 
 /// Where the noise of a reading is known from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -59,14 +60,16 @@ impl Known {
     }
 }
 
-/// From readings of one visit under the same load: whatever a model predicts of two of them is the same
-/// but for what depends on their order, which the best model has taken out. With the degrees of freedom.
+/// From readings of one visit under the same load, of absolute positions of one pose: whatever a model predicts
+/// of two of them is the same but for what depends on their order, which the best model has taken out. With the
+/// degrees of freedom.
 fn repeated(case: &Case<'_>, left: &DVector<f64>) -> Option<(f64, usize)> {
     let readings = case.observation.readings();
     let (mut sum, mut count) = (0.0, 0);
-    let visits = readings.visit.iter().max().map_or(0, |last| last + 1);
-    let mut rows: Vec<Vec<usize>> = vec![Vec::new(); visits];
-    readings.visit.iter().enumerate().for_each(|(row, &visit)| rows[visit].push(row));
+    // No two positions share an unloaded reading, and a pose that is come to again has its noise anew.
+    let of = if case.scene.what == What::Positions { &readings.block } else { &readings.visit };
+    let mut rows: Vec<Vec<usize>> = vec![Vec::new(); of.iter().max().map_or(0, |last| last + 1)];
+    of.iter().enumerate().for_each(|(row, &group)| rows[group].push(row));
     for rows in rows {
         let mut used = vec![false; rows.len()];
         for i in 0..rows.len() {
