@@ -6,7 +6,7 @@
 
 use robstiff_identify::campaign::{Campaign, Data};
 use robstiff_identify::identify::predict;
-use robstiff_identify::trace::{Options, Trace, Verdict, trace};
+use robstiff_identify::trace::{EffectParameter, Options, Trace, Verdict, trace};
 use robstiff_robots::{Description, Effect, Link};
 use robstiff_tests::judge_tracing::{Told, suspected};
 use robstiff_tests::matrix::interval::fewest;
@@ -197,34 +197,39 @@ fn faults_of_the_rig_are_named_and_not_written() {
     let knocked = assert_named("reflector_slip@rig", 960, |positions, _| {
         positions.hidden = vec![Hidden::ReflectorSlip { shift: [2e-4, -2e-4, 1e-4], when: 0.4 }];
     });
-    let (rate, follows) = ([3e-4, 0.0, -2e-4], Follows::Settling(700.0));
-    let settles = assert_named("thermal_drift@rig", 940, |positions, _| {
-        positions.hidden = vec![Hidden::ThermalDrift { rate, follows }];
-    });
     let wild = assert_named("outliers@rig", 740, |positions, _| {
         positions.wild = vec![(7, [0.0, 1e-3, 0.0]), (31, [-2e-3, 0.0, 5e-4])];
     });
-    for (_, trace) in slips.iter().chain(&moved).chain(&grows).chain(&settles).chain(&knocked).chain(&wild) {
+    for (_, trace) in slips.iter().chain(&moved).chain(&grows).chain(&knocked).chain(&wild) {
         assert!(trace.description.effects.is_empty());
     }
     for (_, trace) in &grows {
-        // The hall warms up all the time: the drift may as well be one with that.
-        let number = &trace.effects[0].effect.parameters[0];
-        let off = if number.unit == "1/K" { number.value - 4e-5 } else { 0.0 };
-        assert!(number.name == "expansion" && off.abs() < 4.0 * number.std.expect("a fitted number"), "{number:?}");
+        // It may as well be named as a drift of the readings.
+        let growth = trace.effects[0].effect.parameters.iter().find(|number| number.name == "growth");
+        let near = |number: &EffectParameter| (number.value - 4e-5).abs() < 4.0 * number.std.expect("a fitted number");
+        assert!(growth.is_none_or(near), "{growth:?}");
     }
     for (_, trace) in &knocked {
-        // Of 60 rows behind a header.
-        assert_eq!(trace.effects[0].effect.value("from_line"), 26.0);
-    }
-    for (_, trace) in &settles {
-        let constant = trace.effects[0].effect.parameters.iter().find(|number| number.name == "constant");
-        let constant = constant.expect("what settles has a time constant");
-        assert!((constant.value - 700.0).abs() < 4.0 * constant.std.expect("a fitted number"), "{constant:?}");
+        // Of 60 rows behind a header, in the course of a campaign at moments that are some rows apart.
+        let line = trace.effects[0].effect.value("from_line");
+        assert!((22.0..=30.0).contains(&line), "{line}");
     }
     for (_, trace) in &wild {
         // The header is line 1.
         assert_eq!(trace.effects[0].lines, [9, 33]);
+    }
+}
+
+/// The readings settle, fast and then slowly: no drift of the catalogue, and none is the whole truth.
+#[test]
+fn readings_that_settle_are_not_the_arm() {
+    for run in 0..3 {
+        let (mut positions, declared) = positions(run, 940);
+        let (rate, follows) = ([3e-4, 0.0, -2e-4], Follows::Settling(700.0));
+        positions.hidden = vec![Hidden::ThermalDrift { rate, follows }];
+        let trace = traced(&read(&positions, &declared, positions.reflector));
+        assert!(matches!(trace.verdict, Verdict::Unexplained | Verdict::Partial), "{} {}", trace.verdict, trace.why);
+        assert!(trace.effects.iter().all(|named| named.effect.is_of_rig()), "{:?}", Told::of(&trace).names);
     }
 }
 

@@ -95,6 +95,11 @@ impl<'c> Position<'c> {
         })
     }
 
+    /// The payload of each row over the heaviest.
+    pub fn loads(&self) -> &[f64] {
+        &self.clock.load
+    }
+
     /// The torque of the payloads on each joint (from 0) of the arm as declared, through all rows (Nm or N).
     pub fn torques(&self) -> Vec<Vec<f64>> {
         self.loaded(&self.world, &[]).torques

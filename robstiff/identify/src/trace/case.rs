@@ -30,7 +30,8 @@ pub struct Case<'c> {
     pub noise: Option<f64>,
     /// The joints (from 1) whose angle is read behind the gear.
     pub encoders: Vec<usize>,
-    /// Of clamped axes, the torque of each row over the largest of its axis.
+    /// Of clamped axes, the torque of each row over the largest of its axis; of positions, the payload over the
+    /// heaviest.
     loads: Vec<f64>,
 }
 
@@ -64,7 +65,8 @@ impl<'c> Case<'c> {
                 let training = training(data.poses.len(), campaign.holdout);
                 let observation = Box::new(observation);
                 let (groups, group) = (data.poses.clone(), observation.readings().block.clone());
-                let (noise, encoders, loads) = (declared, Vec::new(), Vec::new());
+                let (noise, encoders) = (declared, Vec::new());
+                let loads = observation.loads().to_vec();
                 Self { observation, scene, training, groups, group, noise, encoders, loads }
             }
             Data::Clamped(rows) => {
@@ -92,13 +94,12 @@ impl<'c> Case<'c> {
         Engine::new(&*self.observation, robot, self.scene.clone(), self.training.clone(), self.noise)
     }
 
-    /// Whether two rows of a visit were read under the same load, but for a part of the usual one.
+    /// Whether two rows of a visit, of positions of a pose, were read under the same load, but for a part of the usual one.
     pub fn is_same_load(&self, one: usize, other: usize, part: f64) -> bool {
         let readings = self.observation.readings();
         match self.scene.what {
             What::Displacements => (readings.force[one] - readings.force[other]).norm() < part,
-            What::Clamped => (self.loads[one] - self.loads[other]).abs() < part,
-            What::Positions => false,
+            What::Clamped | What::Positions => (self.loads[one] - self.loads[other]).abs() < part,
         }
     }
 
