@@ -60,5 +60,8 @@ pub const SUSPECTED: f64 = 0.05;
 /// may be missing in one fold ([`RECURS`]).
 pub const FOLDS: usize = 5;
 
+/// More outlying rows than this part of all are not single mistakes: something is missing that a few rows show.
+pub const MOST_OUTLYING: f64 = 0.05;
+
 /// Outlying rows are reported if they are this part of all rows or more: fewer are the tail of the others.
 pub const OUTLYING_ROWS: f64 = 0.002;

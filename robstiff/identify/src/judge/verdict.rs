@@ -34,8 +34,8 @@ impl fmt::Display for Verdict {
 pub struct Evidence<'a> {
     /// How many effects are named.
     pub named: usize,
-    /// Whether outlying readings are.
-    pub outliers: bool,
+    /// The share of rows that are named as outlying (1).
+    pub outlying: f64,
     /// Full names of what is suspected.
     pub suspected: &'a [String],
     /// What has no name and looks like this, each as a noun for a sentence.
@@ -55,7 +55,7 @@ pub struct OverNoise {
     pub by_chance: f64,
 }
 
-use super::thresholds::{ABOVE_NOISE, MOST_NAMES};
+use super::thresholds::{ABOVE_NOISE, MOST_NAMES, MOST_OUTLYING};
 
 /// The verdict, and why in a sentence without its full stop.
 pub fn verdict(of: &Evidence<'_>) -> (Verdict, String) {
@@ -71,12 +71,15 @@ pub fn verdict(of: &Evidence<'_>) -> (Verdict, String) {
         if !of.suspected.is_empty() {
             return Some(format!("suspected, but not certain enough to be named: {}", of.suspected.join(", ")));
         }
+        if of.outlying > MOST_OUTLYING {
+            return Some("more readings do not belong to the others than single mistakes would make".into());
+        }
         if left {
             return Some("poses deviate by more than the noise of their readings".into());
         }
         above.then(|| "what is left is more than the noise".into())
     };
-    let is_none = of.named == 0 && !of.outliers;
+    let is_none = of.named == 0 && of.outlying == 0.0;
     match (of.named, more()) {
         (_, None) if is_none => (Verdict::Adequate, "nothing is missing that these data could show".into()),
         (_, Some(why)) if is_none => (Verdict::Unexplained, why),
@@ -97,7 +100,7 @@ mod tests {
 
     const NOTHING: Evidence<'static> = Evidence {
         named: 0,
-        outliers: false,
+        outlying: 0.0,
         suspected: &[],
         looks_like: &[],
         discrepancy: 0.0,
@@ -107,8 +110,9 @@ mod tests {
     #[test]
     fn outlying_readings_are_something() {
         assert_eq!(verdict(&NOTHING).0, Verdict::Adequate);
-        assert_eq!(verdict(&Evidence { outliers: true, ..NOTHING }).0, Verdict::Explained);
-        assert_eq!(verdict(&Evidence { outliers: true, over_noise: None, ..NOTHING }).0, Verdict::Partial);
+        assert_eq!(verdict(&Evidence { outlying: 0.01, ..NOTHING }).0, Verdict::Explained);
+        assert_eq!(verdict(&Evidence { outlying: 0.08, ..NOTHING }).0, Verdict::Partial);
+        assert_eq!(verdict(&Evidence { outlying: 0.01, over_noise: None, ..NOTHING }).0, Verdict::Partial);
     }
 
     /// Ten repetitions know a noise to no better than half of it.

@@ -266,14 +266,14 @@ fn against_the_loads(campaign: &Campaign, engine: &Engine<'_>, found: &crate::se
 
 /// The verdict, from what was judged.
 fn concluded(
-    (named, outliers): (usize, bool),
+    (named, outlying): (usize, f64),
     (suspected, looks_like): (&[String], &[String]),
     judgement: &gates::Judgement,
     over_noise: Option<verdict::OverNoise>,
 ) -> (Verdict, String) {
     verdict::verdict(&verdict::Evidence {
         named,
-        outliers,
+        outlying,
         suspected,
         looks_like,
         discrepancy: judgement.discrepancy,

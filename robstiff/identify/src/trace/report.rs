@@ -81,7 +81,8 @@ pub fn report(
     let outliers = beside::outliers(engine, found, case);
     let reflector = beside::reflector(engine, found);
     let many = effects.len() + usize::from(reflector.is_some());
-    let (verdict, why) = concluded((many, outliers.is_some()), (&names, &looks_like), judgement, over_noise);
+    let outlying = outliers.as_ref().map_or(0.0, |of| of.lines.len() as f64 / case.rows(true).len() as f64);
+    let (verdict, why) = concluded((many, outlying), (&names, &looks_like), judgement, over_noise);
     effects.extend(reflector.into_iter().chain(outliers));
     effects.iter_mut().for_each(|named| named.partial = verdict == Verdict::Partial);
     let robots = |form: &&usize| found.layout.candidates[found.layout.forms[**form].candidate].kind.side == Side::Robot;
