@@ -8,10 +8,12 @@ use crate::model::Term;
 use crate::observe::Readings;
 use crate::regression::noise::{OUTLYING, discrepancies, rows_of_blocks};
 use crate::select::classes::{ByCandidate, Class, classes, extend, weigh_again};
-use crate::select::engine::{Engine, Found, groups};
+use crate::select::engine::Engine;
 use crate::select::folds::Nested;
+use crate::select::passes::Found;
 use crate::select::problem::moves;
 use crate::select::search::{search, with, without};
+use crate::select::unseen::groups;
 use crate::select::{Problem, Set};
 
 /// A class, and how it fares.

@@ -8,7 +8,8 @@ use crate::judge::thresholds::{OUTLYING_ROWS, STANDS_OUT};
 use crate::probability::chi_square_tail;
 use crate::select::always::REFLECTOR;
 use crate::select::classes::ODDS;
-use crate::select::engine::{Engine, Found};
+use crate::select::engine::Engine;
+use crate::select::passes::Found;
 
 /// The reflector of absolute positions, where it is elsewhere than the file says. It is always fitted, so
 /// no set does without it: what counts is how far from zero it comes out.

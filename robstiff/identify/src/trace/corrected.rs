@@ -9,9 +9,11 @@ use super::errors::Misfit;
 use crate::effects::{Side, What};
 use crate::judge::thresholds::LOSS;
 use crate::model::Term;
-use crate::select::engine::{Engine, Fitted, Found, Solved};
+use crate::select::engine::{Engine, Fitted};
 use crate::select::folds::Nested;
+use crate::select::passes::Found;
 use crate::select::search::with;
+use crate::select::solve::Solved;
 use crate::select::{Layout, Set};
 
 /// The model that is written.

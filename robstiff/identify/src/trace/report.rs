@@ -23,8 +23,9 @@ use crate::judge::verdict::OverNoise;
 use crate::model::Term;
 use crate::regression::Fit;
 use crate::select::classes::ODDS;
-use crate::select::engine::{Engine, Found};
+use crate::select::engine::Engine;
 use crate::select::folds;
+use crate::select::passes::Found;
 use crate::select::{Layout, Problem, Set};
 
 /// A tracing in full.

@@ -1,0 +1,51 @@
+//! The error of a set on poses that are left out in turn.
+
+use nalgebra::DMatrix;
+use rand::SeedableRng;
+use rand::seq::SliceRandom;
+use rand_chacha::ChaCha8Rng;
+
+use super::engine::Engine;
+use super::layout::Layout;
+use crate::observe::Readings;
+use crate::regression::noise::rows_of_blocks;
+
+/// Folds for the error that named effects leave one after the other.
+const UNSEEN_FOLDS: usize = 5;
+
+impl Engine<'_> {
+    /// The error of a set under a discrepancy on poses that are left out in turn, with the columns of
+    /// a layout as they were linearised.
+    pub fn unseen_rms(&self, layout: &Layout, columns: &DMatrix<f64>, set: &[usize], kappa: usize) -> Option<f64> {
+        let readings = self.observation.readings();
+        let group = groups(readings, &self.training, UNSEEN_FOLDS, 1);
+        let grams = self.grams(columns, &group);
+        let (mut sum, mut count) = (0.0, 0);
+        for fold in 0..group.iter().flatten().max().map_or(0, |last| last + 1) {
+            let problem = self.problem(layout, columns, grams.without(fold).total);
+            let fit = problem.fit(set, kappa)?;
+            let unseen: Vec<bool> = group.iter().map(|of| *of == Some(fold)).collect();
+            for row in rows_of_blocks(readings, &unseen).concat() {
+                for k in 0..readings.reported {
+                    let at = row * readings.width + k;
+                    let taken: f64 = fit.columns.iter().zip(fit.mean.iter()).map(|(&c, b)| columns[(at, c)] * b).sum();
+                    sum += (columns[(at, columns.ncols() - 1)] - taken).powi(2);
+                    count += 1;
+                }
+            }
+        }
+        (count > 0).then(|| (sum / f64::from(count)).sqrt())
+    }
+}
+
+/// The fold of each block, drawn at random, alike from each stratum; none of one that is not fitted
+/// to.
+pub fn groups(readings: &Readings, training: &[bool], folds: usize, seed: u64) -> Vec<Option<usize>> {
+    let mut blocks: Vec<usize> = (0..training.len()).filter(|&block| training[block]).collect();
+    blocks.shuffle(&mut ChaCha8Rng::seed_from_u64(seed));
+    blocks.sort_by_key(|&block| readings.stratum[block]);
+    let folds = folds.min(blocks.len());
+    let mut group = vec![None; training.len()];
+    blocks.into_iter().enumerate().for_each(|(k, block)| group[block] = Some(k % folds.max(1)));
+    group
+}
