@@ -17,6 +17,7 @@ use std::path::PathBuf;
 
 use robstiff_identify::identify::Error;
 use robstiff_identify::plan::next;
+use robstiff_identify::rounded;
 use robstiff_identify::trace::{Options, account_for, trace};
 
 use crate::failure::Failure;
@@ -85,7 +86,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let page = triage::page(&triage) + &page::page(&traced, &campaign, &summary);
     let document = json::document(&document::document(&traced, &triage, &campaign, &warnings));
     let report = report::html(&content::report((&traced, summary), &triage, &campaign, options.seed)?);
-    files.add(robot, traced.description.to_yaml());
+    files.add(robot, rounded(traced.description.clone(), &campaign.robot).to_yaml());
     if let Some(path) = &arguments.json {
         files.add(path, document.clone());
     }
