@@ -4,11 +4,12 @@ use nalgebra::{DMatrix, DVector};
 
 use super::engine::{Engine, Fitted};
 use super::layout::Layout;
-use super::problem::Set;
+use super::problem::{Problem, Set};
 use super::search::{Visited, Width, search};
 use super::solve::{STEPS, Solved};
 use crate::effects::{Place, Shapes, What};
 use crate::model::Term;
+use crate::regression::Gram;
 use crate::regression::noise::discrepancies;
 
 /// What a search came to.
@@ -23,6 +24,8 @@ pub struct Found {
     pub kappa: usize,
     /// The columns there with the readings behind.
     pub columns: DMatrix<f64>,
+    /// Their Gram matrices, under each discrepancy.
+    pub grams: Vec<Gram>,
     /// The best set at its own optimum.
     pub own: Solved,
 }
@@ -201,14 +204,17 @@ impl Engine<'_> {
         let kappa = visited.sets.get(&best)?.kappa;
         let begin = self.start_of(&problem, &best, kappa);
         let own = self.solve_bounded(&layout, &best, (&begin, kappa), 2 * STEPS)?;
-        drop(problem);
-        Some(Found { layout, visited, best, kappa, columns, own })
+        let grams = problem.grams;
+        Some(Found { layout, visited, best, kappa, columns, grams, own })
+    }
+
+    /// The problem that the last search came to.
+    pub fn problem_of<'f>(&self, found: &'f Found) -> Problem<'f> {
+        self.problem(&found.layout, &found.columns, found.grams.clone())
     }
 
     /// The noise of one axis of a reading where no discrepancy accounts for any of the residual.
     pub fn noise_at(&self, found: &Found) -> f64 {
-        let grams = self.grams(&found.columns, &self.one_group()).total;
-        let problem = self.problem(&found.layout, &found.columns, grams);
-        problem.fit(&found.best, 0).map_or(0.0, |fit| fit.variance.sqrt())
+        self.problem_of(found).fit(&found.best, 0).map_or(0.0, |fit| fit.variance.sqrt())
     }
 }
