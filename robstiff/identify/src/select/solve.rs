@@ -1,5 +1,7 @@
 //! A set at its own optimum, by Gauss-Newton steps.
 
+use std::collections::BTreeMap;
+
 use nalgebra::DVector;
 
 use super::engine::{Engine, Fitted, Point};
@@ -71,8 +73,7 @@ impl Engine<'_> {
         let readings = self.observation.readings();
         let mut point = self.only(layout, &chosen, from);
         let (mut variance, mut scales) = self.start.clone();
-        let always = chosen.iter().filter(|k| layout.always().contains(k)).count();
-        let mut solved: Option<(Fit, Vec<Gram>, Vec<Prior>, Point)> = None;
+        let mut solved: Option<(Fit, Vec<Gram>, Vec<Prior>)> = None;
         for step in 0..=steps {
             let values = layout.values(&point.values);
             let predicted = self.observation.predict(&point.world, &layout.parameters, &values);
@@ -89,7 +90,7 @@ impl Engine<'_> {
                 parameters: chosen.iter().map(|&k| layout.parameters[k].clone()).collect(),
                 keys: chosen.iter().map(|&k| layout.keys[k].clone()).collect(),
                 fixed: 0,
-                always,
+                always: chosen.iter().filter(|k| layout.always().contains(k)).count(),
                 candidates: Vec::new(),
                 forms: Vec::new(),
             };
@@ -102,28 +103,31 @@ impl Engine<'_> {
             let start = Start { variance, scales: &scales };
             let found = fit(&grams[kappa.min(grams.len() - 1)], &own, &priors, self.prior, start, 8)?;
             (variance, scales) = (found.variance, found.scales.clone());
-            let next = self.absorbed(layout, at_mean(layout, &chosen, &found, &point));
+            let mut values = BTreeMap::new();
+            for (at, &k) in own.iter().enumerate() {
+                values.insert(part.keys[k].clone(), found.mean[at]);
+            }
+            let next = self.absorbed(layout, Point { world: point.world.clone(), values });
             let moved = {
                 let values = layout.values(&next.values);
                 self.observation.predict(&next.world, &layout.parameters, &values) - &predicted
             };
             let moved = readings.rms(&moved, (0..readings.rows()).filter(|&row| self.training[readings.block[row]]));
+            point = next;
             let done = moved < SETTLED * variance.sqrt() && step > 0;
-            solved = Some((found, grams, priors, std::mem::replace(&mut point, next)));
+            solved = Some((found, grams, priors));
             if done {
                 break;
             }
         }
-        let (mut found, grams, mut priors, at) = solved?;
-        let own = found.columns.clone();
-        let (score, kappa) = self.weigh(&grams, &own, &priors, (variance, &scales))?;
-        learn_sizes(&mut priors, &found, always);
-        if let Some(again) = fit(&grams[kappa], &own, &priors, self.prior, Start { variance, scales: &scales }, 8) {
-            found = again;
-            point = self.absorbed(layout, at_mean(layout, &chosen, &found, &at));
-        }
+        let (mut found, grams, priors) = solved?;
         let values = layout.values(&point.values);
         let left = &readings.values - self.observation.predict(&point.world, &layout.parameters, &values);
+        let own = found.columns.clone();
+        let (score, kappa) = self.weigh(&grams, &own, &priors, (variance, &scales))?;
+        if let Some(again) = fit(&grams[kappa], &own, &priors, self.prior, Start { variance, scales: &scales }, 8) {
+            found = again;
+        }
         found.columns = own.iter().map(|&k| chosen[k]).collect();
         Some(Solved { point, fit: found, left, score, kappa, held: Vec::new() })
     }
@@ -179,24 +183,5 @@ impl Engine<'_> {
     /// The same where compliances may be negative.
     pub fn free(&self, layout: &Layout) -> Option<Solved> {
         self.fitting(Fitted::Written).solve(layout, &[], (&self.point, self.first_kappa()), 2 * STEPS)
-    }
-}
-
-/// A point with the numbers of a fit, whose columns are among some of the layout's.
-fn at_mean(layout: &Layout, chosen: &[usize], fit: &Fit, from: &Point) -> Point {
-    let key = |column: &usize| layout.keys[chosen[*column]].clone();
-    let values = fit.columns.iter().map(key).zip(fit.mean.iter().copied()).collect();
-    Point { world: from.world.clone(), values }
-}
-
-/// Numbers of effects that come out larger than was likely: as large is likely then (empirical Bayes, MacKay,
-/// Neural Computation 4, 1992). What is likely weighs an effect against others; it shall not pull the numbers of
-/// one that is there towards zero, by more than half their standard deviation.
-fn learn_sizes(priors: &mut [Prior], fit: &Fit, always: usize) {
-    for (&k, mean) in fit.columns.iter().zip(fit.mean.iter()).filter(|(k, _)| **k >= always) {
-        let prior = &mut priors[k];
-        if prior.group.is_none() {
-            prior.sd = prior.sd.max((mean - prior.mean).abs());
-        }
     }
 }
