@@ -11,6 +11,9 @@ use crate::inverse::Inverse;
 use crate::path::{Goal, PathPoint, SolvedPath, ToolPath, Waypoint};
 use crate::program::{Document, Frame, Instruction, Language, Motion, Move, Position, Speed, Target, TextFile};
 
+/// Joint coordinates that differ by less are the same (rad or m): rounding, below all digits that programs have.
+const UNCHANGED: f64 = 1e-9;
+
 /// Frames that a program takes from its controller, by name: tools in the controller's flange, work
 /// frames in its world (m).
 #[derive(Clone, Debug, Default)]
@@ -222,7 +225,7 @@ impl<'d, const N: usize> Followed<'d, N> {
         let moves = self.document.moves().zip(&self.stops).zip(commanded).enumerate();
         let positions = moves.map(|(i, ((to, stop), q))| {
             // What is not corrected stays byte for byte.
-            if stop.wanted.is_none() || *q == stop.q {
+            if stop.wanted.is_none() || (q - stop.q).amax() < UNCHANGED {
                 return to.position.clone();
             }
             let target = match &to.position.target {
