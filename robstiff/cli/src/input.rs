@@ -8,12 +8,16 @@ use robstiff_machining::milling::CutFile;
 use robstiff_robots::quantity::{self, Dimension};
 use robstiff_robots::{Description, Joint, JointKind, catalogue};
 
+mod frames;
+mod nominal;
 mod options;
 mod program;
 
 use crate::failure::Failure;
 use crate::{output, text};
 
+pub use frames::{NamedFrame, RobotLanguage, blend, joint_speed, named_frame};
+pub use nominal::{moved, nominal};
 pub use options::{
     Force, above_zero, all_with_unit, axis, axis_name, force, length, margin, positive, seed, three_with_unit,
     tool_axis, whole, with_unit,

@@ -2,6 +2,7 @@
 //! stiffness, and what measurements say about the description.
 
 mod agreement;
+mod correct;
 mod effect;
 mod emit;
 mod export;
@@ -55,6 +56,7 @@ enum Command {
     Forces(forces::Arguments),
     Stability(stability::Arguments),
     Path(Box<path::Arguments>),
+    Correct(Box<correct::Arguments>),
     Import(import::Arguments),
     Export(export::Arguments),
     View(scene::Arguments),
@@ -79,6 +81,7 @@ impl Command {
             Self::Forces(arguments) => forces::run(arguments),
             Self::Stability(arguments) => stability::run(arguments),
             Self::Path(arguments) => path::run(arguments),
+            Self::Correct(arguments) => correct::run(arguments),
             Self::Import(arguments) => import::run(arguments),
             Self::Export(arguments) => export::run(arguments),
             Self::View(arguments) => scene::run(arguments),

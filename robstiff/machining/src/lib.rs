@@ -8,10 +8,13 @@
 //!   makes up for it;
 //! - [`online`]: correcting the joint targets while cutting;
 //! - [`program`]: programs of KUKA, ABB and FANUC controllers, written, read, and changed in place;
+//! - [`controller`]: what a controller makes of positions with its nominal model, programs of paths,
+//!   and programs corrected;
 //! - [`map`]: stiffness and deviation over joint space, planes and boxes, and where a workpiece
 //!   is best put.
 
 pub mod compensation;
+pub mod controller;
 pub mod deviation;
 mod golden;
 pub mod inverse;

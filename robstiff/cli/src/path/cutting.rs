@@ -197,6 +197,11 @@ impl ForceArguments {
 }
 
 impl CuttingRequest {
+    /// The same with the path corrected.
+    pub fn compensating(self) -> Self {
+        Self { compensate: true, ..self }
+    }
+
     /// Computes what the forces do.
     pub fn compute<const N: usize>(
         &self,

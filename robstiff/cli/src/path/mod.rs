@@ -2,8 +2,9 @@
 //! tool off it, and what to command instead.
 
 pub mod cutting;
-mod deviation;
+pub mod deviation;
 mod doubts;
+mod robot_program;
 
 use std::fmt::Write as _;
 use std::path::PathBuf;
@@ -22,6 +23,7 @@ use crate::output::{self, Files};
 use crate::text::{Table, cell, count, decimals};
 use crate::{input, json};
 use cutting::{Cutting, CuttingRequest};
+use robot_program::RobotProgramArguments;
 
 /// Jumps that are shown; the others are counted.
 const MOST_JUMPS: usize = 20;
@@ -41,8 +43,8 @@ pub struct Arguments {
     /// The tool path: a table, G-code (.ngc, .nc, .tap, .gcode, .cnc) or APT (.apt, .cls, .cl)
     #[arg(value_name = "PATH")]
     path: PathBuf,
-    /// Write joint coordinates and poses of every point to FILE
-    #[arg(long, value_name = "FILE")]
+    /// Write joint coordinates and poses of every point to FILE; with `--program` the program's files into a folder
+    #[arg(long, value_name = "FILE|DIR")]
     out: Option<PathBuf>,
     /// The posture to begin near: joint coordinates in rad (or m), or with their unit as in "0.5, 30 deg, -pi/2"
     #[arg(long, value_name = "q1,q2,..", allow_hyphen_values = true)]
@@ -62,6 +64,8 @@ pub struct Arguments {
     cutting: cutting::ForceArguments,
     #[command(flatten)]
     program: input::ProgramArguments,
+    #[command(flatten)]
+    robot_program: RobotProgramArguments,
 }
 
 /// Solves the path.
@@ -82,10 +86,14 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             arguments.path.display()
         )));
     }
+    let mut stands = Matrix4::identity();
     if let Some(text) = &arguments.place {
         refuse_if_in_no_frame(&path)?;
-        path = path.placed(&place(text).map_err(Failure::Usage)?);
+        stands = place(text).map_err(Failure::Usage)?;
+        path = path.placed(&stands);
     }
+    let program = arguments.robot_program.read(&arguments.robot, &robot, &arguments.path, arguments.out.as_ref())?;
+    let out = arguments.out.as_ref().filter(|_| program.is_none());
     let mut files = Files::default();
     let request = arguments.cutting.read(arguments.tool_axis, path.is_program, &mut files)?;
     if request.is_some() {
@@ -93,19 +101,29 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     files.protect(&arguments.robot);
     files.protect(&arguments.path);
-    files.foresee(arguments.out.iter().chain(&arguments.json))?;
+    let foreseen = program.as_ref().map(|program| program.foreseen());
+    files.foresee(out.into_iter().chain(&arguments.json).chain(foreseen.iter().flatten()))?;
     let solved = output::working("solving the path", |_| {
         with_robot!(&robot, |robot| solve(&robot, &path, start.as_deref(), request.as_ref()))
     })?;
-    if let Some(out) = &arguments.out {
+    if let Some(out) = out {
         files.add(out, table(&robot, &solved));
     }
+    let mut document = document(&robot, &solved);
+    let axis = (!path.gives_joints()).then(|| input::axis_name(&arguments.tool_axis));
+    let mut page = page(&robot, &arguments.path.display().to_string(), &solved, axis);
+    if let Some(program) = &program {
+        let sent = with_robot!(&robot, |arm| program.compose(&arm, &robot, &path, &stands, &solved.commanded()))?;
+        document["program"] = sent.document();
+        page += &sent.page();
+        sent.files.into_iter().for_each(|(path, text)| files.add(path, text));
+        files.add(sent.job, json::document(&document));
+    }
     if let Some(path) = &arguments.json {
-        files.add(path, json::document(&document(&robot, &solved)));
+        files.add(path, json::document(&document));
     }
     let said = files.write()?;
-    let axis = (!path.gives_joints()).then(|| input::axis_name(&arguments.tool_axis));
-    output::print(page(&robot, &arguments.path.display().to_string(), &solved, axis) + &said)
+    output::print(page + &said)
 }
 
 /// A path solved, whatever the number of joints.
@@ -124,6 +142,17 @@ struct Point {
     s: f64,
     feed: Option<f64>,
     rapid: bool,
+    spindle: Option<f64>,
+    tool: Option<u32>,
+}
+
+impl Solved {
+    /// The points with the joint coordinates to command: those of the corrected path where there is one.
+    fn commanded(&self) -> Vec<(&Point, &[f64])> {
+        let corrected = self.cutting.as_ref().and_then(|cutting| cutting.corrected.as_ref());
+        let q = |i: usize| corrected.map_or(&self.points[i].q, |corrected| &corrected.points[i].q).as_slice();
+        self.points.iter().enumerate().map(|(i, point)| (point, q(i))).collect()
+    }
 }
 
 fn solve<const N: usize>(
@@ -143,6 +172,8 @@ fn solve<const N: usize>(
         s: point.s,
         feed: point.feed,
         rapid: point.rapid,
+        spindle: point.spindle,
+        tool: point.tool,
     });
     let closed_form = Inverse::new(robot).has_closed_form();
     Ok(Solved { points: points.collect(), jumps: solved.jumps, closed_form, cutting })

@@ -86,7 +86,9 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let page = triage::page(&triage) + &page::page(&traced, &campaign, &summary);
     let document = json::document(&document::document(&traced, &triage, &campaign, &warnings));
     let report = report::html(&content::report((&traced, summary), &triage, &campaign, options.seed)?);
-    files.add(robot, rounded(traced.description.clone(), &campaign.robot).to_yaml());
+    let rounded = rounded(traced.description.clone(), &campaign.robot);
+    let written = input::moved(&rounded, (&campaign.robot, &campaign.robot_path), &arguments.out);
+    files.add(robot, written.to_yaml());
     if let Some(path) = &arguments.json {
         files.add(path, document.clone());
     }

@@ -54,7 +54,8 @@ impl Keep {
         }
     }
 
-    fn target(self, pose: &Matrix4<f64>) -> Target {
+    /// What it keeps of a pose.
+    pub(crate) fn target(self, pose: &Matrix4<f64>) -> Target {
         let whole = Target::pose(pose);
         match (self, whole.orientation) {
             (Self::Axis(tool), Orientation::Full(rotation)) => Target::axis(whole.position, tool, rotation * tool),

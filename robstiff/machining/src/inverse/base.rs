@@ -77,6 +77,16 @@ impl Base {
         (ways, along.abs() - length)
     }
 
+    /// How far the wrist is ahead of the first axis (m), along second axis cross first, and the sine of the
+    /// turn about the second axis from the upper arm to the line from the elbow to the wrist.
+    pub fn sides(&self, second: f64, third: f64) -> (f64, f64) {
+        let bent = Turn::new(if self.opposed { -third } else { third }).into_inner();
+        let lower = self.lower * bent;
+        let wrist = self.shoulder + Turn::new(second).into_inner() * (self.upper + lower);
+        let size = (self.upper.norm_sqr() * lower.norm_sqr()).sqrt().max(f64::MIN_POSITIVE);
+        (wrist.im, (self.upper.conj() * lower).im / size)
+    }
+
     /// All ways for a place of the wrist, up to four.
     pub fn ways<const N: usize>(&self, center: &Vector3<f64>, seed: &SVector<f64, N>, mut found: impl FnMut(Way)) {
         for first in once_if_same(self.shoulders(center, seed[0]).0) {

@@ -30,6 +30,7 @@ use robstiff::{JointKind, Robot};
 use starts::Starts;
 pub use target::{Orientation, Remaining, Target};
 pub use unreached::Unreached;
+pub(crate) use wrist::Sides;
 use wrist::Wrist;
 
 /// A solution is within this of its target (m, rad).
@@ -78,6 +79,11 @@ impl<'r, R: Robot<N>, const N: usize> Inverse<'r, R, N> {
     /// and either three that meet in a point or, of five, two.
     pub fn has_closed_form(&self) -> bool {
         self.wrist.is_some()
+    }
+
+    /// On which sides of its axes the arm is; `None` without a closed form.
+    pub(crate) fn sides(&self, q: &SVector<f64, N>) -> Option<Sides> {
+        self.wrist.as_ref().map(|wrist| wrist.sides(q))
     }
 
     /// The solution nearest to a seed: the one whose joints differ least, as

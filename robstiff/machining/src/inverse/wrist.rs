@@ -37,6 +37,20 @@ pub struct Wrist<const N: usize> {
     only_near: bool,
 }
 
+/// On which sides of its axes an arm is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sides {
+    /// How far the wrist is ahead of the first axis (m): along second axis cross first.
+    pub ahead: f64,
+    /// The sine of the turn about the second axis from the upper arm to the line from the elbow to the
+    /// wrist.
+    pub bend: f64,
+    /// The direction of the first axis in the base frame.
+    pub first: Vector3<f64>,
+    /// A point on the second axis at zero, in the base frame (m).
+    pub shoulder: Vector3<f64>,
+}
+
 /// Axes apart by less than this times the reach count as meeting (m/m), and
 /// angles off by less (rad) as right. What is left of that, such as the errors
 /// of a measured DH table, is for the descent that follows.
@@ -110,6 +124,13 @@ impl<const N: usize> Wrist<N> {
             // Where any turn will do there are too many to go through.
             Orientation::Free => {}
         }
+    }
+
+    /// On which sides of its axes the arm is.
+    pub fn sides(&self, q: &SVector<f64, N>) -> Sides {
+        let (ahead, bend) = self.base.sides(q[1], q[2]);
+        let shoulder = self.origin + self.frame * self.axes[1].point;
+        Sides { ahead, bend, first: self.frame * Vector3::z(), shoulder }
     }
 
     /// The first three joints.

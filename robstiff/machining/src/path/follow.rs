@@ -126,7 +126,7 @@ impl ToolPath {
     }
 
     /// A problem with a line of the file (from 1).
-    pub(crate) fn diagnostic(&self, line: usize, message: String, help: &str) -> Diagnostic {
+    pub fn diagnostic(&self, line: usize, message: String, help: &str) -> Diagnostic {
         Diagnostic::of_line(&self.file, Line { number: line, text: self.line(line) }, message, help)
     }
 }

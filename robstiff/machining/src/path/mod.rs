@@ -175,6 +175,13 @@ impl ToolPath {
         self.points.iter().all(|point| matches!(point.goal, Goal::Joints(_)))
     }
 
+    /// A path of motions that are in joint coordinates already, with the text of their file (empty to
+    /// show no lines); `tool` is the axis of the tool in the TCP's frame. Its feeds are those of the cut.
+    pub(crate) fn of_motions(file: &str, text: String, points: Vec<Waypoint>, tool: Unit<Vector3<f64>>) -> Self {
+        let file = file.to_owned();
+        Self { file, points, warnings: Vec::new(), is_program: true, tool, lines: Lines::new(text) }
+    }
+
     /// The same path when the frame that its poses are given in stands at
     /// `place` (homogeneous, 4 x 4, m) in the base frame. Joint coordinates stay.
     #[must_use]

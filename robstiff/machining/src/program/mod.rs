@@ -55,6 +55,8 @@ pub enum Instruction {
     /// A motion that is kept as it is: no joint or linear one, or its position is
     /// known at run time alone.
     KeptMove {
+        /// Which of the files that were read, from 0.
+        file: usize,
         /// The line of the file, from 1.
         line: usize,
         /// The text.
@@ -100,6 +102,8 @@ pub enum Motion {
 /// A motion to a position.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Move {
+    /// Which of the files that were read, from 0.
+    pub file: usize,
     /// The line of the file, from 1; 0 for one that was not read.
     pub line: usize,
     /// How the tool gets there.
@@ -119,7 +123,7 @@ pub struct Move {
 impl Move {
     /// A motion that stops at a position without a name.
     pub fn to(motion: Motion, position: Position) -> Self {
-        Self { line: 0, motion, position, point: None, speed: None, zone: Zone::Fine, options: String::new() }
+        Self { file: 0, line: 0, motion, position, point: None, speed: None, zone: Zone::Fine, options: String::new() }
     }
 }
 

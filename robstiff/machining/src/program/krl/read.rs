@@ -119,7 +119,7 @@ impl<'s> Reader<'s> {
             return self.motion(file, line, motion, cursor, text);
         }
         if let Some((_, what)) = KEPT.iter().find(|(word, _)| *word == first) {
-            return self.keep(line, text, what);
+            return self.keep(file, line, text, what);
         }
         if !self.set(file, &first, cursor) {
             if self.is_change(words) {
@@ -147,11 +147,11 @@ impl<'s> Reader<'s> {
         whole
     }
 
-    fn keep(&mut self, line: usize, text: &str, why: &str) {
+    fn keep(&mut self, file: usize, line: usize, text: &str, why: &str) {
         // Where it ends is not known.
         self.state.before = Default::default();
         let (text, why) = (text.to_owned(), why.to_owned());
-        self.instructions.push(Instruction::KeptMove { line, text, why });
+        self.instructions.push(Instruction::KeptMove { file, line, text, why });
     }
 
     fn motion(&mut self, file: usize, line: usize, motion: Motion, mut cursor: Cursor<'_>, text: &str) {
@@ -166,16 +166,16 @@ impl<'s> Reader<'s> {
                 return;
             };
             if matches!(cursor.peek(), Some('[' | ':' | '.')) {
-                return self.keep(line, text, "its position is computed at run time");
+                return self.keep(file, line, text, "its position is computed at run time");
             }
             match self.values.get(&name.to_ascii_uppercase()) {
                 Some(Some((place, value))) => (*place, value.clone(), Some(name.to_owned())),
-                Some(None) => return self.keep(line, text, &format!("the program changes `{name}`")),
-                None => return self.keep(line, text, &format!("`{name}` is declared in none of the files")),
+                Some(None) => return self.keep(file, line, text, &format!("the program changes `{name}`")),
+                None => return self.keep(file, line, text, &format!("`{name}` is declared in none of the files")),
             }
         };
         if cursor.peek() == Some(':') {
-            return self.keep(line, text, "its position is computed at run time");
+            return self.keep(file, line, text, "its position is computed at run time");
         }
         let mut words = Vec::new();
         while let Some(word) = ["C_PTP", "C_DIS", "C_VEL", "C_ORI", "C_SPL"].iter().find(|word| cursor.eat_word(word)) {
@@ -185,14 +185,14 @@ impl<'s> Reader<'s> {
         self.with(&options);
         let (position, slots) = match value.position(&mut self.state.before) {
             Ok(found) => found,
-            Err(why) => return self.keep(line, text, &why),
+            Err(why) => return self.keep(file, line, text, &why),
         };
         let zone = self.state.zone(motion, &words);
         let speed = match motion {
             Motion::Joint => self.state.joint_speed.clone(),
             Motion::Linear => self.state.line_speed.clone(),
         };
-        self.instructions.push(Instruction::Move(Move { line, motion, position, point, speed, zone, options }));
+        self.instructions.push(Instruction::Move(Move { file, line, motion, position, point, speed, zone, options }));
         self.places.push(Place { file: place, slots });
     }
 

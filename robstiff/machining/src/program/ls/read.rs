@@ -130,12 +130,12 @@ impl Reader<'_> {
             "J" | "L" if is_position => {
                 let motion = if first == "J" { Motion::Joint } else { Motion::Linear };
                 if let Err(why) = self.motion(line, motion, cursor) {
-                    self.instructions.push(Instruction::KeptMove { line, text, why });
+                    self.instructions.push(Instruction::KeptMove { file: self.file, line, text, why });
                 }
             }
             "C" | "A" | "S" if is_position => {
                 let why = "a circular motion or a spline".to_owned();
-                self.instructions.push(Instruction::KeptMove { line, text, why });
+                self.instructions.push(Instruction::KeptMove { file: self.file, line, text, why });
             }
             _ => self.instructions.push(Instruction::Statement { line, text }),
         }
@@ -180,7 +180,16 @@ impl Reader<'_> {
         }
         let point = taught.comment.filter(|comment| !comment.is_empty());
         let position = taught.position;
-        self.instructions.push(Instruction::Move(Move { line, motion, position, point, speed, zone, options }));
+        self.instructions.push(Instruction::Move(Move {
+            file: self.file,
+            line,
+            motion,
+            position,
+            point,
+            speed,
+            zone,
+            options,
+        }));
         self.places.push(Place { file: self.file, slots: taught.slots });
         Ok(())
     }

@@ -101,10 +101,10 @@ impl<'s> Reader<'s> {
                 cursor.word();
                 self.motion(*file, line, &first, cursor, bytes, &text);
             }
-            "MOVEC" => self.keep(line, text, "a circular motion"),
-            _ if is_other_motion(&first) => self.keep(line, text, "no plain joint or linear motion"),
+            "MOVEC" => self.keep(*file, line, text, "a circular motion"),
+            _ if is_other_motion(&first) => self.keep(*file, line, text, "no plain joint or linear motion"),
             _ if !text.starts_with('!') && text.split_whitespace().skip(1).any(is_motion) => {
-                self.keep(line, text, "a motion inside of another statement");
+                self.keep(*file, line, text, "a motion inside of another statement");
             }
             _ => {
                 self.declare(place);
@@ -114,8 +114,8 @@ impl<'s> Reader<'s> {
         }
     }
 
-    fn keep(&mut self, line: usize, text: String, why: impl Into<String>) {
-        self.instructions.push(Instruction::KeptMove { line, text, why: why.into() });
+    fn keep(&mut self, file: usize, line: usize, text: String, why: impl Into<String>) {
+        self.instructions.push(Instruction::KeptMove { file, line, text, why: why.into() });
     }
 
     /// Forgets what an assignment gives another value.
@@ -174,12 +174,19 @@ impl<'s> Reader<'s> {
         } else {
             match self.values.get(&to.main.to_ascii_uppercase()) {
                 Some(Some(found)) => found.clone(),
-                Some(None) => return self.keep(line, text.to_owned(), format!("the program changes `{}`", to.main)),
+                Some(None) => {
+                    return self.keep(file, line, text.to_owned(), format!("the program changes `{}`", to.main));
+                }
                 None if to.main.contains(['(', '*', '{']) => {
-                    return self.keep(line, text.to_owned(), "its position is computed at run time");
+                    return self.keep(file, line, text.to_owned(), "its position is computed at run time");
                 }
                 None => {
-                    return self.keep(line, text.to_owned(), format!("`{}` is declared in none of the files", to.main));
+                    return self.keep(
+                        file,
+                        line,
+                        text.to_owned(),
+                        format!("`{}` is declared in none of the files", to.main),
+                    );
                 }
             }
         };
@@ -187,7 +194,7 @@ impl<'s> Reader<'s> {
         let position = if word == "MOVEABSJ" { value.jointtarget() } else { value.robtarget() };
         let (position, slots) = match position {
             Ok(found) => found,
-            Err(NoPosition::Computed(why)) => return self.keep(line, text.to_owned(), why),
+            Err(NoPosition::Computed(why)) => return self.keep(file, line, text.to_owned(), why),
             Err(NoPosition::Wrong(bytes, message)) => {
                 let help = "a turn is a quaternion of length 1, its scalar first";
                 self.problems.push((at, bytes, message, help));
@@ -200,7 +207,16 @@ impl<'s> Reader<'s> {
         let motion = if word == "MOVEL" { Motion::Linear } else { Motion::Joint };
         let (speed, zone) = (Some(self.speed(speed)), self.zone(zone));
         let point = (!inline).then(|| to.main.clone());
-        self.instructions.push(Instruction::Move(Move { line, motion, position, point, speed, zone, options: rest }));
+        self.instructions.push(Instruction::Move(Move {
+            file,
+            line,
+            motion,
+            position,
+            point,
+            speed,
+            zone,
+            options: rest,
+        }));
         self.places.push(Place { file: at, slots });
     }
 
