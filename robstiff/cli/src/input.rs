@@ -8,6 +8,7 @@ use robstiff_machining::milling::CutFile;
 use robstiff_robots::quantity::{self, Dimension};
 use robstiff_robots::{Description, Joint, JointKind, catalogue};
 
+mod cell;
 mod frames;
 mod nominal;
 mod options;
@@ -16,6 +17,7 @@ mod program;
 use crate::failure::Failure;
 use crate::{output, text};
 
+pub use cell::{Asked, CellArgument, Opened, Setup};
 pub use frames::{NamedFrame, RobotLanguage, blend, joint_speed, named_frame};
 pub use nominal::{moved, nominal};
 pub use options::{
@@ -36,6 +38,12 @@ pub fn robot(path: &Path) -> Result<(Description, String), Failure> {
             "there is no file {}, and no robot of that name in the catalogue: {}",
             path.display(),
             catalogue::names()
+        )));
+    }
+    if cell::is_cell(path) {
+        return Err(Failure::new(format_args!(
+            "{} is a cell, not a robot's description; `path`, `online`, `stability` and `view` take it by `--cell`",
+            path.display()
         )));
     }
     let (robot, file) = catalogue::read(Path::new(""), path)?;
@@ -60,9 +68,14 @@ pub fn complain_if_rigid(robot: &Description) {
     }
 }
 
-/// Stops there, where all that is asked for is how far something moves the tool.
-pub fn refuse_if_rigid(robot: &Description) -> Result<(), Failure> {
-    rigid(robot).map_or(Ok(()), |said| Err(Failure::new(said)))
+/// Stops there, where all that is asked for is how far something moves the tool; `asked` is what needs it.
+pub fn refuse_if_rigid(robot: &Description, asked: &str) -> Result<(), Failure> {
+    rigid(robot).map_or(Ok(()), |said| {
+        Err(Failure::new(format_args!(
+            "{said}; {asked} needs them: identify them from measurements, or write estimates, e.g. \
+             `compliance: 3e-7 rad/Nm`, and say under `source:` that they are guessed"
+        )))
+    })
 }
 
 /// Reads a campaign, and says what its reader noticed.
@@ -129,6 +142,11 @@ pub struct At {
 }
 
 impl At {
+    /// Whether the pose is given.
+    pub fn is_given(&self) -> bool {
+        self.at.is_some()
+    }
+
     /// The pose that `--at` gives, or where it does not the [`default_coordinates`]; says which
     /// coordinates the joints' limits leave out.
     pub fn pose(&self, robot: &Description) -> Result<Vec<f64>, Failure> {

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use robstiff_identify::{campaign, simulate};
-use robstiff_machining::{map, milling};
+use robstiff_machining::{cell, map, milling};
 use robstiff_robots::schema;
 
 use crate::failure::Failure;
@@ -33,6 +33,8 @@ enum Kind {
     Cut,
     /// What to map
     Map,
+    /// A cell: robot, spindle, tools and workpiece
+    Cell,
 }
 
 /// Prints the schema; standard output is the schema, and nothing but the schema.
@@ -43,6 +45,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         Kind::Scenario => simulate::schema::schema(),
         Kind::Cut => milling::schema::schema(),
         Kind::Map => map::schema::schema(),
+        Kind::Cell => cell::schema::schema(),
     });
     let Some(path) = arguments.out.as_deref() else {
         return output::print(schema);

@@ -47,9 +47,12 @@ fn quantities_without_a_unit_are_refused() {
 fn options_that_would_be_ignored_are_refused() {
     let pocket = file("pocket.csv");
     let path = ["path", "rv130hsc", &pocket, "--tool-axis", "x"];
-    for more in [["--force-frame", "tool"], ["--surface", "face"], ["--spindle-axis", "-z"]] {
-        let said = fail(2, &[&path[..], &more].concat());
-        assert!(said.contains("required arguments were not provided"), "{more:?}: {said}");
+    let said = fail(2, &[&path[..], &["--force-frame", "tool"]].concat());
+    assert!(said.contains("required arguments were not provided"), "{said}");
+    let fast = file("fast.yaml");
+    for more in [&["--surface", "face"][..], &["--spindle-axis", "-z"], &["--peak"], &["--against", &fast]] {
+        let said = fail(2, &[&path[..], more].concat());
+        assert!(said.contains(&format!("{} needs a force: give `--cut CUT.yaml`", more[0])), "{more:?}: {said}");
     }
     let cut = file("roughing.yaml");
     fail(2, &[&path[..], &["--cut", &cut, "--force-frame", "tool"]].concat());

@@ -196,7 +196,7 @@ fn what_the_readme_says_to_type_works() {
 
 #[test]
 fn what_the_guides_say_to_type_works() {
-    for name in ["guide", "machining"] {
+    for name in ["guide", "machining", "cell"] {
         let typed = follow(name, &fs::read_to_string(book().join(format!("{name}.md"))).unwrap());
         assert!(typed.contains("robstiff "), "{name}.md runs no command");
     }

@@ -11,7 +11,7 @@ use robstiff_robots::document::Document;
 use robstiff_robots::schema::value_of;
 use serde_json::Value;
 
-const KINDS: [&str; 5] = ["robot", "campaign", "scenario", "cut", "map"];
+const KINDS: [&str; 6] = ["robot", "campaign", "scenario", "cut", "map", "cell"];
 
 fn validator(kind: &str) -> jsonschema::Validator {
     let schema: Value = serde_json::from_str(&succeed(&["schema", kind])).unwrap();
@@ -32,6 +32,7 @@ fn kind_of(file: &Value) -> Option<&'static str> {
         () if has("convention") => Some("robot"),
         () if has("seed") && has("poses") => Some("scenario"),
         () if has("depth") || has("measured") && has("speed") => Some("cut"),
+        () if has("robot") && has("spindle") => Some("cell"),
         () if has("positions") || has("joints") => Some("map"),
         () => None,
     }
@@ -94,6 +95,7 @@ fn what_is_wrong_in_shape_is_refused() {
     const SCENARIO: &str = "seed: 1\nposes: {count: 40}\nforce: {bounds: [500 N, 1300 N]}\n";
     const CUT: &str = "tool: {diameter: 16 mm, teeth: 3}\nmilling: slot\nmaterial: al7075-t6\nfeed: 0.1 mm/tooth\n";
     const MAP: &str = "force: 500 N\n";
+    const CELL: &str = "robot: rv130hsc\nspindle: {axis: x}\n";
     let cases = [
         ("campaign", CAMPAIGN, "noise: {displacement: 8 um}", "noise: {displacement: 8 N}"),
         ("campaign", CAMPAIGN, "measured: {frame: tool, at: [0, 0, 120 mm]}", "measured: {frame: flange}"),
@@ -122,6 +124,12 @@ fn what_is_wrong_in_shape_is_refused() {
             "positions: {x: 1 m, y: 0, z: {from: 0 m, to: 1 m, count: 9}}\ntool: {direction: [0, 0, -1]}",
             "positions: {x: 1 m, y: 0}\ntool: {direction: [0, 0, -1]}",
         ),
+        ("cell", CELL, "tools: {T1: {length: 120 mm, teeth: 3}}", "tools: {T1: {diameter: 16 mm}}"),
+        ("cell", CELL, "tools: {T1: {length: 120 mm}}", "tools: {mill: {length: 120 mm}}"),
+        ("cell", CELL, "work: {xyz: [1 m, 0, 0], rpy: [0, 0, 90 deg]}", "work: {xyz: [1 m, 0, 0 N]}"),
+        ("cell", CELL, "work: {G54: {xyz: [1 m, 0, 0]}, G59.3: {}}", "work: {G55: {xyz: [1 m, 0, 0]}}"),
+        ("cell", CELL, "joint_speeds: [90 deg/s, 2 m/s]", "joint_speeds: [90 deg]"),
+        ("cell", CELL, "program: {machine: table A C, tcp: on}", "program: {machine: table A C, tcp: maybe}"),
     ];
     let validators = KINDS.map(validator);
     for (kind, rest, right, wrong) in cases {

@@ -7,12 +7,14 @@
 //! - [`deviation`], [`compensation`]: how far a cut pushes the tool off a path, and the path that
 //!   makes up for it;
 //! - [`online`]: correcting the joint targets while cutting;
+//! - [`cell`]: robot, spindle, tools and workpiece in one file;
 //! - [`program`]: programs of KUKA, ABB and FANUC controllers, written, read, and changed in place;
 //! - [`controller`]: what a controller makes of positions with its nominal model, programs of paths,
 //!   and programs corrected;
 //! - [`map`]: stiffness and deviation over joint space, planes and boxes, and where a workpiece
 //!   is best put.
 
+pub mod cell;
 pub mod compensation;
 pub mod controller;
 pub mod deviation;

@@ -24,12 +24,14 @@ use crate::path::cutting::{Cutting, CuttingRequest, ForceArguments};
 /// robstiff/docs/commands/correct.md.
 #[derive(clap::Args)]
 pub struct Arguments {
-    /// The robot's description, or the name of a robot in the catalogue; it has a `controller`
-    #[arg(value_name = "ROBOT.yaml")]
-    robot: PathBuf,
+    /// The robot's description, or the name of a robot in the catalogue; it has a `controller`; left out with `--cell`
+    #[arg(value_name = "ROBOT.yaml", required = true)]
+    robot: Option<PathBuf>,
     /// The program; the `.dat` of a `.src` and routines that it calls are found beside it
-    #[arg(value_name = "PROGRAM", required = true)]
+    #[arg(value_name = "PROGRAM", required_unless_present = "cell")]
     program: Vec<PathBuf>,
+    #[command(flatten)]
+    cell: input::CellArgument,
     /// Write the corrected files, under their names, into a folder
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
@@ -47,8 +49,8 @@ pub struct Arguments {
     #[arg(long, value_name = "NAME=x,y,z,roll,pitch,yaw", allow_hyphen_values = true, value_parser = input::named_frame)]
     work_data: Vec<NamedFrame>,
     /// The axis of the tool in the TCP's frame, from the spindle to the tip: x, y, z, -x, -y or -z
-    #[arg(long, value_name = "AXIS", default_value = "z", allow_hyphen_values = true, value_parser = input::tool_axis)]
-    tool_axis: Unit<Vector3<f64>>,
+    #[arg(long, value_name = "AXIS", allow_hyphen_values = true, value_parser = input::tool_axis)]
+    tool_axis: Option<Unit<Vector3<f64>>>,
     /// Linear motions at this speed or above cut nothing
     #[arg(long, value_name = "SPEED", value_parser = positive(Dimension::Speed))]
     rapid_from: Option<f64>,
@@ -61,19 +63,28 @@ pub struct Arguments {
 
 /// Corrects the program.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let (robot, _) = input::robot(&arguments.robot)?;
-    let nominal = input::nominal(&arguments.robot, &robot)?;
+    // With a cell all that is given beside it are programs.
+    let (first, mut programs) = (arguments.robot.as_ref(), arguments.program.clone());
+    let first = first.filter(|_| !arguments.cell.is_given());
+    if arguments.cell.is_given() {
+        programs.splice(0..0, arguments.robot.clone());
+    }
+    let (mut setup, _) = arguments.cell.setup(first, None, "robstiff correct PROGRAM")?;
+    setup.mount()?;
     let mut files = Files::default();
-    files.protect(&arguments.robot);
-    let request = arguments.cutting.read(arguments.tool_axis, true, &mut files)?.map(CuttingRequest::compensating);
+    setup.protect(&mut files);
+    let spindle = setup.spindle("--tool-axis", arguments.tool_axis.map(Unit::into_inner))?;
+    let request = arguments.cutting.read(&setup, spindle, &mut files)?.map(CuttingRequest::compensating);
+    let nominal = input::nominal(setup.robot_file(), &setup.robot)?;
+    let robot = setup.robot;
     if request.is_some() {
-        input::refuse_if_rigid(&robot)?;
+        input::refuse_if_rigid(&robot, "`robstiff correct` with a cut or forces")?;
     }
     let start = match &arguments.start {
         Some(text) => Some(input::coordinates_of("--start", text, &robot)?),
         None => None,
     };
-    let (language, sources) = files::gather(&arguments.program)?;
+    let (language, sources) = files::gather(&programs)?;
     sources.iter().for_each(|source| files.protect(&source.path));
     let texts: Vec<TextFile> = sources.iter().map(files::Source::text_file).collect();
     let targets: Vec<PathBuf> = match &arguments.out {
@@ -88,6 +99,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         nominal: nominal.as_ref(),
         document: &document,
         start: start.as_deref(),
+        tool: spindle.unwrap_or(Vector3::z_axis()),
         request: request.as_ref(),
     };
     let corrected = output::working("correcting the program", |_| with_robot!(&robot, |arm| job.correct(&arm)))?;
@@ -108,6 +120,8 @@ struct Job<'j> {
     nominal: Option<&'j Description>,
     document: &'j Document,
     start: Option<&'j [f64]>,
+    /// From the spindle to the tip, in the TCP's frame.
+    tool: Unit<Vector3<f64>>,
     request: Option<&'j CuttingRequest>,
 }
 
@@ -148,7 +162,7 @@ impl Job<'_> {
         }
         let tool = placement(&nominal.tool_of_arm(&followed.tool));
         let arm = Generic::<N>::new(&Description { tool, ..self.robot.clone() }).expect("the tool adds no joint");
-        let (path, solved) = followed.path(&arm, self.arguments.tool_axis, self.arguments.taught)?;
+        let (path, solved) = followed.path(&arm, self.tool, self.arguments.taught)?;
         let cutting = self.request.map(|request| request.compute(&arm, &path, &solved)).transpose()?;
         let commanded: Vec<SVector<f64, N>> = match cutting.as_ref().and_then(|cutting| cutting.corrected.as_ref()) {
             Some(corrected) => corrected.points.iter().map(|point| SVector::from_column_slice(&point.q)).collect(),

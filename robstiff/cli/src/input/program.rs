@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use robstiff::nalgebra::Vector3;
+use robstiff_machining::cell::Cell;
 use robstiff_machining::nc::{Format, Machine, OFFSETS, Options};
 use robstiff_robots::quantity::Dimension;
 
@@ -21,13 +22,13 @@ pub struct ProgramArguments {
     #[arg(long, value_name = "AXES", allow_hyphen_values = true, value_parser = Machine::parse)]
     machine: Option<Machine>,
     /// Where the axes of the table meet, in the path's frame; needed without TCP
-    #[arg(long, value_name = "x,y,z", allow_hyphen_values = true, value_parser = point, requires = "machine")]
+    #[arg(long, value_name = "x,y,z", allow_hyphen_values = true, value_parser = point)]
     center: Option<Vector3<f64>>,
     /// From where the axes of the head meet to the tip; needed without TCP
-    #[arg(long, value_name = "LENGTH", value_parser = positive(Dimension::Length), requires = "machine")]
+    #[arg(long, value_name = "LENGTH", value_parser = positive(Dimension::Length))]
     pivot_length: Option<f64>,
     /// Whether coordinates are those of the tip on the workpiece (TCP), whatever the program's codes say
-    #[arg(long, value_name = "WHETHER", value_enum, requires = "machine")]
+    #[arg(long, value_name = "WHETHER", value_enum)]
     tcp: Option<OnOff>,
     /// The zero of a work offset in the path's frame, as in "G55 = 100 mm, 0, 0"; for each of them. G53 is followed only
     /// where its zero is given
@@ -48,8 +49,8 @@ struct Offset {
 }
 
 impl ProgramArguments {
-    /// The options for a path of that name.
-    pub fn options(&self, path: &Path) -> Result<Options, Failure> {
+    /// The options for a path of that name: what is given, else what the cell says.
+    pub fn options(&self, path: &Path, cell: Option<&Cell>) -> Result<Options, Failure> {
         let given = [
             ("--arc-tolerance", self.arc_tolerance.is_some()),
             ("--machine", self.machine.is_some()),
@@ -62,13 +63,23 @@ impl ProgramArguments {
             );
             return Err(Failure::Usage(message));
         }
-        let mut options = Options { tcp: self.tcp.map(|tcp| tcp == OnOff::On), ..Options::default() };
+        let mut options = cell.map_or_else(Options::default, Cell::options);
+        options.tcp = self.tcp.map(|tcp| tcp == OnOff::On).or(options.tcp);
         options.arc_tolerance = self.arc_tolerance.unwrap_or(options.arc_tolerance);
-        options.machine = self.machine.clone().map(|machine| Machine {
-            center: self.center,
-            pivot_length: self.pivot_length,
+        // Another machine has axes that meet elsewhere.
+        options.machine = self.machine.clone().or(options.machine).map(|machine| Machine {
+            center: self.center.or(machine.center),
+            pivot_length: self.pivot_length.or(machine.pivot_length),
             ..machine
         });
+        let of_machine = [
+            ("--center", self.center.is_some()),
+            ("--pivot-length", self.pivot_length.is_some()),
+            ("--tcp", self.tcp.is_some()),
+        ];
+        if let (None, Some((name, _))) = (&options.machine, of_machine.iter().find(|(_, given)| *given)) {
+            return Err(Failure::Usage(format!("{name} goes with `--machine`, e.g. `--machine \"table A C\"`")));
+        }
         for Offset { index, zero } in &self.offset {
             options.offsets[*index] = Some(*zero);
         }

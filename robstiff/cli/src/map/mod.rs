@@ -71,7 +71,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let (robot, _) = input::robot(&arguments.robot)?;
     // Where the tool gets is in a map as well, but no place is better than another.
     match arguments.place {
-        Some(_) => input::refuse_if_rigid(&robot)?,
+        Some(_) => input::refuse_if_rigid(&robot, "`robstiff map --place`")?,
         None => input::complain_if_rigid(&robot),
     }
     let task = task(&arguments.map, &robot)?;

@@ -1,6 +1,7 @@
 //! What pushes the tool: read, and simulated with each of the controllers.
 
 use std::ops::Range;
+use std::path::Path;
 
 use robstiff::nalgebra::{Matrix3, SVector, Unit, Vector3, Vector6};
 use robstiff::{Robot, with_robot};
@@ -8,15 +9,13 @@ use robstiff_machining::deviation::{Deviation, ForceTable, Surface};
 use robstiff_machining::milling::{CutFile, CutFrame, ForceFrame, Forces};
 use robstiff_machining::online::{HeldBack, Instant, LeftOfSine, Timeline, left_of_sine, simulate_along};
 use robstiff_machining::path::ToolPath;
-use robstiff_robots::Description;
 
 use super::reach::Reach;
 use super::{Arguments, FREQUENCIES, Frequencies, Variant, bound};
 use crate::failure::Failure;
-use crate::input::Force;
+use crate::input::{Asked, Force, Opened, Setup};
 use crate::output::{self, Files};
-use crate::path::cutting::{complain_of_feed, from_spindle, load_along};
-use crate::path::refuse_if_in_no_frame;
+use crate::path::cutting::{complain_of_feed, load_along};
 use crate::text::significant;
 use crate::{forces, input};
 
@@ -96,17 +95,23 @@ pub struct Course {
 
 impl LoadRequest {
     /// Reads what is named.
-    pub fn read(arguments: &Arguments, robot: &Description, files: &mut Files) -> Result<Self, Failure> {
+    pub fn read(
+        arguments: &Arguments,
+        path: Option<&Path>,
+        setup: &mut Setup,
+        files: &mut Files,
+    ) -> Result<Self, Failure> {
         let load = &arguments.load;
-        let cut = match &load.cut {
+        let has_force = load.forces.is_some() || load.force.is_some();
+        let cut = match setup.cut(load.cut.as_ref()).filter(|_| !has_force) {
             Some(path) => {
-                let file = input::cut(path)?;
-                forces::protect(files, path, &file);
+                let file = input::cut(&path)?;
+                forces::protect(files, &path, &file);
                 Some((file, path.display().to_string()))
             }
             None => None,
         };
-        if let Some(path) = &arguments.path {
+        if let Some(path) = path {
             let (source, by) = match (&load.forces, cut) {
                 (Some(path), _) => {
                     let table = ForceTable::read(path)?;
@@ -122,24 +127,26 @@ impl LoadRequest {
                 }
             };
             let name = format!("{} under {by}", path.display());
-            let mut path = ToolPath::open(path, robot, load.tool_axis, &arguments.program.options(path)?)?;
-            if let Some(place) = &load.place {
-                refuse_if_in_no_frame(&path)?;
-                path = path.placed(place);
-            }
+            let Opened { path, spindle, .. } = setup.open(&Asked {
+                path,
+                tool_axis: load.tool_axis,
+                spindle_axis: load.spindle_axis,
+                place: load.place,
+                program: &arguments.program,
+            })?;
             if let Source::Cut(file) = &source {
                 complain_of_feed(file, &by, &path, false);
             }
-            path.warnings.iter().for_each(|warning| output::complain(format_args!("warning: {warning}")));
-            let axis = load.spindle_axis.unwrap_or(from_spindle(load.tool_axis, path.is_program));
+            let axis = spindle.ok_or_else(|| setup.lacks_axis("--spindle-axis"))?;
             return Ok(Self::Path { path: Box::new(path), source, axis, feed: load.feed, name });
         }
-        let q = load.at.pose(robot)?;
+        setup.mount()?;
+        let q = load.at.pose(&setup.robot)?;
         let frequencies = load.frequencies.as_ref().map_or(FREQUENCIES.to_vec(), |Frequencies(given)| given.clone());
         let sine = |wrench, name| Self::Sine { q: q.clone(), wrench, frequencies: frequencies.clone(), name };
         match (cut, load.force) {
             (Some((file, name)), _) => {
-                let turn = turn(&file.forces, robot, &q, arguments)?;
+                let turn = turn(&file.forces, setup, &q, arguments)?;
                 let wrench = |force: Vector3<f64>| {
                     let force = turn * force;
                     Vector6::new(force.x, force.y, force.z, 0.0, 0.0, 0.0)
@@ -358,11 +365,18 @@ impl Course {
 }
 
 /// What turns the forces of a cut at a pose into the base frame.
-fn turn(forces: &Forces, robot: &Description, q: &[f64], arguments: &Arguments) -> Result<Matrix3<f64>, Failure> {
-    let pose = with_robot!(robot, |arm| arm.transform(&SVector::from_column_slice(q)));
+fn turn(forces: &Forces, setup: &Setup, q: &[f64], arguments: &Arguments) -> Result<Matrix3<f64>, Failure> {
+    let pose = with_robot!(&setup.robot, |arm| arm.transform(&SVector::from_column_slice(q)));
     let tool: Matrix3<f64> = pose.fixed_view::<3, 3>(0, 0).into_owned();
-    let axis = tool * arguments.load.spindle_axis.unwrap_or(arguments.load.tool_axis).as_ref();
-    forces
-        .to_base(CutFrame::new(&axis, &arguments.load.toward).as_ref(), &tool)
-        .ok_or_else(|| Failure::Usage("--toward goes along the tool's axis; a cut feeds across it".to_owned()))
+    let (given, option) = match arguments.load.spindle_axis {
+        Some(axis) => (Some(axis), "--spindle-axis"),
+        None => (arguments.load.tool_axis, "--tool-axis"),
+    };
+    let axis = setup.spindle(option, given.map(Unit::into_inner))?;
+    let frame =
+        axis.and_then(|axis| CutFrame::new(&(tool * axis.as_ref()), &arguments.load.toward.unwrap_or(Vector3::x())));
+    forces.to_base(frame.as_ref(), &tool).ok_or_else(|| match axis {
+        Some(_) => Failure::Usage("--toward goes along the tool's axis; a cut feeds across it".to_owned()),
+        None => setup.lacks_axis("--tool-axis"),
+    })
 }

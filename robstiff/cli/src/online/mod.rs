@@ -5,7 +5,7 @@ mod loads;
 mod page;
 mod reach;
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use robstiff::nalgebra::{Matrix4, Unit, Vector3};
 use robstiff::{Generic, with_robot};
@@ -34,12 +34,14 @@ const TOO_STIFF: f64 = 0.1;
 /// a force by its frequency. See robstiff/docs/commands/online.md.
 #[derive(clap::Args)]
 pub struct Arguments {
-    /// The robot's description, or the name of a robot in the catalogue
-    #[arg(value_name = "ROBOT.yaml")]
-    robot: PathBuf,
+    /// The robot's description, or the name of a robot in the catalogue; left out with `--cell`
+    #[arg(value_name = "ROBOT.yaml", required_unless_present = "cell")]
+    robot: Option<PathBuf>,
     /// The tool path (robstiff/docs/commands/path.md); without it, a pose
-    #[arg(value_name = "PATH", conflicts_with = "at")]
+    #[arg(value_name = "PATH")]
     path: Option<PathBuf>,
+    #[command(flatten)]
+    cell: input::CellArgument,
     #[command(flatten)]
     load: LoadArguments,
     #[command(flatten)]
@@ -65,30 +67,32 @@ struct LoadArguments {
     #[arg(long, value_name = "CUT.yaml", conflicts_with_all = ["forces", "force"])]
     cut: Option<PathBuf>,
     /// The force along the path, a row for each point or by arc length, in the base frame
-    #[arg(long, value_name = "FORCES.csv", requires = "path", conflicts_with = "force")]
+    #[arg(long, value_name = "FORCES.csv", conflicts_with = "force")]
     forces: Option<PathBuf>,
     /// A force at a pose, in the base frame, e.g. "0, 0, -400 N"
-    #[arg(long, value_name = "Fx,Fy,Fz", allow_hyphen_values = true, value_parser = force, conflicts_with = "path")]
+    #[arg(long, value_name = "Fx,Fy,Fz", allow_hyphen_values = true, value_parser = force)]
     force: Option<Force>,
     #[command(flatten)]
     at: input::At,
-    /// Where the feed of a cut at a pose goes, in the base frame
-    #[arg(long, value_name = "x,y,z", default_value = "1,0,0", allow_hyphen_values = true, value_parser = axis, conflicts_with_all = ["path", "force"])]
-    toward: Vector3<f64>,
+    /// Where the feed of a cut at a pose goes, in the base frame; 1,0,0 where left out
+    #[arg(long, value_name = "x,y,z", allow_hyphen_values = true, value_parser = axis, conflicts_with = "force")]
+    toward: Option<Vector3<f64>>,
     /// Frequencies at which the force at a pose comes and goes; where left out, "0.2, 0.5, 1, 2, 5, 10 Hz"
-    #[arg(long, value_name = "FREQUENCIES", allow_hyphen_values = true, value_parser = frequencies, conflicts_with = "path")]
+    #[arg(long, value_name = "FREQUENCIES", allow_hyphen_values = true, value_parser = frequencies)]
     frequencies: Option<Frequencies>,
     /// The speed along a path that does not say it, e.g. "600 mm/min"
-    #[arg(long, value_name = "SPEED", requires = "path", conflicts_with_all = ["force", "at"], allow_hyphen_values = true, value_parser = positive(Dimension::Speed))]
+    #[arg(long, value_name = "SPEED", conflicts_with_all = ["force", "at"], allow_hyphen_values = true, value_parser = positive(Dimension::Speed))]
     feed: Option<f64>,
     /// Where the frame of the path's poses stands in the base frame: x, y, z, then roll, pitch, yaw, as in
     /// "1500 mm, 0, 800 mm, 0, 0, 90 deg"
-    #[arg(long, value_name = "x,y,z,roll,pitch,yaw", requires = "path", allow_hyphen_values = true, value_parser = crate::path::place)]
+    #[arg(long, value_name = "x,y,z,roll,pitch,yaw", allow_hyphen_values = true, value_parser = crate::path::place)]
     place: Option<Matrix4<f64>>,
-    /// The axis in the TCP's frame that `ux uy uz` point along, and that of the spindle: x, y, z, -x, -y or -z
-    #[arg(long, value_name = "AXIS", default_value = "z", allow_hyphen_values = true, value_parser = tool_axis, conflicts_with = "force")]
-    tool_axis: Unit<Vector3<f64>>,
-    /// From the spindle to the tip, in the TCP's frame; where left out, `--tool-axis`, along a path without its sign
+    /// The axis in the TCP's frame that `ux uy uz` point along, and that of the spindle: x, y, z, -x, -y or -z. Where left
+    /// out, that of the cell, or z where the description tells it
+    #[arg(long, value_name = "AXIS", allow_hyphen_values = true, value_parser = tool_axis, conflicts_with = "force")]
+    tool_axis: Option<Unit<Vector3<f64>>>,
+    /// From the spindle to the tip, in the TCP's frame; where left out, that of the cell, or `--tool-axis`, along a table
+    /// without its sign
     #[arg(long, value_name = "AXIS", allow_hyphen_values = true, value_parser = tool_axis, conflicts_with = "force")]
     spindle_axis: Option<Unit<Vector3<f64>>>,
 }
@@ -174,6 +178,28 @@ struct Variant {
     knows: bool,
 }
 
+impl LoadArguments {
+    /// Stops where an option is of a path and there is none, or of a pose and there is a path.
+    fn fits(&self, path: Option<&Path>) -> Result<(), Failure> {
+        let along =
+            [("--forces", self.forces.is_some()), ("--feed", self.feed.is_some()), ("--place", self.place.is_some())];
+        let at_pose = [
+            ("--at", self.at.is_given()),
+            ("--force", self.force.is_some()),
+            ("--toward", self.toward.is_some()),
+            ("--frequencies", self.frequencies.is_some()),
+        ];
+        let given = |options: &[(&'static str, bool)]| options.iter().find(|(_, given)| *given).map(|(name, _)| *name);
+        match (path, given(&along), given(&at_pose)) {
+            (None, Some(name), _) => Err(Failure::Usage(format!("{name} goes with a path, and none is given"))),
+            (Some(path), _, Some(name)) => {
+                Err(Failure::Usage(format!("{name} is for a pose, and {} is a path", path.display())))
+            }
+            _ => Ok(()),
+        }
+    }
+}
+
 impl ControlArguments {
     fn variants(&self, model: &str) -> Vec<Variant> {
         let of_step = |&step: &f64| {
@@ -201,21 +227,29 @@ impl ControlArguments {
 
 /// Simulates.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let (robot, _) = input::robot(&arguments.robot)?;
-    input::refuse_if_rigid(&robot)?;
-    let (model, name) = match &arguments.model {
-        Some(path) => (input::robot(path)?.0, path.display().to_string()),
-        None => (stiffer(&robot), "model 10 % too stiff".to_owned()),
-    };
+    let (robot, behind) = (arguments.robot.as_ref(), arguments.path.as_ref());
+    let (mut setup, path) = arguments.cell.setup(robot, behind, "robstiff online PATH")?;
+    arguments.load.fits(path.as_deref())?;
+    input::refuse_if_rigid(&setup.robot, "`robstiff online`")?;
     let mut files = Files::default();
-    let request = LoadRequest::read(arguments, &robot, &mut files)?;
-    files.protect(&arguments.robot);
-    arguments.model.iter().chain(&arguments.path).for_each(|path| files.protect(path));
+    let request = LoadRequest::read(arguments, path.as_deref(), &mut setup, &mut files)?;
+    let robot = &setup.robot;
+    let (model, name) = match &arguments.model {
+        Some(path) => {
+            let model = input::robot(path)?.0;
+            // Of a cell it has the same tool in its spindle.
+            let tool = if setup.cell().is_some() { robot.tool } else { model.tool };
+            (Description { tool, ..model }, path.display().to_string())
+        }
+        None => (stiffer(robot), "model 10 % too stiff".to_owned()),
+    };
+    setup.protect(&mut files);
+    arguments.model.iter().chain(&path).for_each(|path| files.protect(path));
     files.foresee(arguments.csv.iter().chain(&arguments.json))?;
     let variants = arguments.control.variants(&name);
     let silent = arguments.control.lost.map(|Loss([from, length])| from..from + length);
     let simulated = output::working("simulating the control", |_| {
-        with_robot!(&robot, |arm| {
+        with_robot!(robot, |arm| {
             let model = Generic::new(&model).map_err(|error| Failure::new(format!("{name}: {error}")))?;
             request.simulate((&arm, &model), &variants, silent.as_ref())
         })
@@ -224,10 +258,10 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         files.add(path, page::table(&simulated, &variants));
     }
     if let Some(path) = &arguments.json {
-        files.add(path, json::document(&page::document(&robot, &simulated, &variants)));
+        files.add(path, json::document(&page::document(robot, &simulated, &variants)));
     }
     let said = files.write()?;
-    output::print(page::page(&robot, &simulated, &variants, &arguments.control) + &said)
+    output::print(page::page(robot, &simulated, &variants, &arguments.control) + &said)
 }
 
 /// The same with the own compliance of every joint a tenth smaller.

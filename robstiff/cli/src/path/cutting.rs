@@ -14,7 +14,7 @@ use robstiff_robots::quantity::Dimension;
 
 use super::doubts::{complain_of_size, lacks_wall};
 use crate::failure::Failure;
-use crate::input::{positive, tool_axis};
+use crate::input::{Setup, positive, tool_axis};
 use crate::output::{self, Files};
 use crate::text::significant;
 use crate::{forces, input};
@@ -34,20 +34,21 @@ pub struct ForceArguments {
     /// What the columns of `--forces` are along
     #[arg(long, value_name = "FRAME", default_value = "base", value_enum, requires = "forces", conflicts_with = "cut")]
     force_frame: Frame,
-    /// The cut that pushes the tool (robstiff/docs/commands/forces.md)
+    /// The cut that pushes the tool (robstiff/docs/commands/forces.md), in place of that of the cell
     #[arg(long, value_name = "CUT.yaml", group = "load")]
     cut: Option<PathBuf>,
     /// Another cut to compare it with
-    #[arg(long, value_name = "CUT.yaml", requires = "cut", conflicts_with = "forces")]
+    #[arg(long, value_name = "CUT.yaml", conflicts_with = "forces")]
     against: Option<PathBuf>,
     /// Judge by the worst force of a revolution, not the mean
-    #[arg(long, requires = "cut", conflicts_with = "forces")]
+    #[arg(long, conflicts_with = "forces")]
     peak: bool,
-    /// The machined surface: a wall beside the tool, or the floor at its tip
-    #[arg(long, value_name = "SURFACE", default_value = "side", value_enum, requires = "load")]
-    surface: Machined,
-    /// From the spindle to the tip, in the TCP's frame; where left out, the axis of `--tool-axis` without its sign
-    #[arg(long, value_name = "AXIS", allow_hyphen_values = true, value_parser = tool_axis, requires = "load")]
+    /// The machined surface: a wall beside the tool, or the floor at its tip; side where left out
+    #[arg(long, value_name = "SURFACE", value_enum)]
+    surface: Option<Machined>,
+    /// From the spindle to the tip, in the TCP's frame; where left out, that of the cell, or the axis of `--tool-axis`
+    /// without its sign
+    #[arg(long, value_name = "AXIS", allow_hyphen_values = true, value_parser = tool_axis)]
     spindle_axis: Option<Unit<Vector3<f64>>>,
     /// Say where the error of the surface is within this, e.g. "0.1 mm"
     #[arg(long, value_name = "LENGTH", allow_hyphen_values = true, value_parser = positive(Dimension::Length))]
@@ -144,11 +145,16 @@ pub struct CorrectedPoint {
 }
 
 impl ForceArguments {
+    /// From the spindle to the tip, where it is given.
+    pub fn spindle_axis(&self) -> Option<Unit<Vector3<f64>>> {
+        self.spindle_axis
+    }
+
     /// Reads what is named; `None` where there is no force.
     pub fn read(
         &self,
-        tool_axis: Unit<Vector3<f64>>,
-        is_program: bool,
+        setup: &Setup,
+        spindle: Option<Unit<Vector3<f64>>>,
         files: &mut Files,
     ) -> Result<Option<CuttingRequest>, Failure> {
         let mut cut = |path: &PathBuf| -> Result<(CutFile, String), Failure> {
@@ -157,7 +163,7 @@ impl ForceArguments {
             Ok((file, path.display().to_string()))
         };
         let against = self.against.as_ref().map(&mut cut).transpose()?;
-        let (source, name) = match (&self.forces, &self.cut) {
+        let (source, name) = match (&self.forces, setup.cut(self.cut.as_ref())) {
             (Some(path), _) => {
                 let table = ForceTable::read(path)?;
                 for warning in &table.warnings {
@@ -172,25 +178,31 @@ impl ForceArguments {
                 (Source::Table(table, frame), path.display().to_string())
             }
             (None, Some(path)) => {
-                let (file, name) = cut(path)?;
+                let (file, name) = cut(&path)?;
                 (Source::Cut(file), name)
             }
             (None, None) => {
-                let asked = if self.compensate { "--compensate" } else { "--tolerance" };
-                return if self.compensate || self.tolerance.is_some() {
-                    Err(Failure::Usage(format!(
-                        "{asked} needs a force: give `--cut CUT.yaml` or `--forces FORCES.csv`"
-                    )))
-                } else {
-                    Ok(None)
+                let asked = [
+                    ("--compensate", self.compensate),
+                    ("--tolerance", self.tolerance.is_some()),
+                    ("--spindle-axis", self.spindle_axis.is_some()),
+                    ("--surface", self.surface.is_some()),
+                    ("--against", self.against.is_some()),
+                    ("--peak", self.peak),
+                ];
+                return match asked.iter().find(|(_, asked)| *asked) {
+                    Some((name, _)) => Err(Failure::Usage(format!(
+                        "{name} needs a force: give `--cut CUT.yaml` or `--forces FORCES.csv`"
+                    ))),
+                    None => Ok(None),
                 };
             }
         };
         let surface = match self.surface {
-            Machined::Side => Surface::Side,
-            Machined::Face => Surface::Face,
+            None | Some(Machined::Side) => Surface::Side,
+            Some(Machined::Face) => Surface::Face,
         };
-        let axis = self.spindle_axis.unwrap_or(from_spindle(tool_axis, is_program));
+        let axis = spindle.ok_or_else(|| setup.lacks_axis("--spindle-axis"))?;
         let (peak, tolerance, compensate) = (self.peak, self.tolerance, self.compensate);
         Ok(Some(CuttingRequest { source, name, against, peak, surface, axis, tolerance, compensate }))
     }
@@ -318,12 +330,6 @@ fn has_direction(load: &Load, name: &str, path: &ToolPath) -> Result<(), Failure
         "{}: no point lies across the tool from the one before, so {name} has no direction anywhere",
         path.file
     )))
-}
-
-/// From the spindle to the tip, where nothing else is said: of a program the tool's axis, of a table
-/// that without its sign, which says how the file writes it.
-pub fn from_spindle(tool_axis: Unit<Vector3<f64>>, is_program: bool) -> Unit<Vector3<f64>> {
-    if is_program { tool_axis } else { Unit::new_unchecked(tool_axis.abs()) }
 }
 
 /// The load of a cut: along a program with the program's feeds, along a table with the cut's.

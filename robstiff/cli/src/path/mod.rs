@@ -11,6 +11,7 @@ use std::path::PathBuf;
 
 use robstiff::nalgebra::{Matrix4, Rotation3, SVector, Unit, UnitQuaternion, Vector3};
 use robstiff::{Robot, with_robot};
+use robstiff_machining::cell::{Cell, TooFast};
 use robstiff_machining::inverse::Inverse;
 use robstiff_machining::path::{Jump, ToolPath};
 use robstiff_machining::program::angles::to_wxyz;
@@ -37,12 +38,14 @@ const MOST_JUMPS: usize = 20;
 /// `name [unit]`. See robstiff/docs/commands/path.md.
 #[derive(clap::Args)]
 pub struct Arguments {
-    /// The robot's description, or the name of a robot in the catalogue
-    #[arg(value_name = "ROBOT.yaml")]
-    robot: PathBuf,
+    /// The robot's description, or the name of a robot in the catalogue; left out with `--cell`
+    #[arg(value_name = "ROBOT.yaml", required_unless_present = "cell")]
+    robot: Option<PathBuf>,
     /// The tool path: a table, G-code (.ngc, .nc, .tap, .gcode, .cnc) or APT (.apt, .cls, .cl)
     #[arg(value_name = "PATH")]
-    path: PathBuf,
+    path: Option<PathBuf>,
+    #[command(flatten)]
+    cell: input::CellArgument,
     /// Write joint coordinates and poses of every point to FILE; with `--program` the program's files into a folder
     #[arg(long, value_name = "FILE|DIR")]
     out: Option<PathBuf>,
@@ -54,9 +57,9 @@ pub struct Arguments {
     #[arg(long, value_name = "x,y,z,roll,pitch,yaw", allow_hyphen_values = true)]
     place: Option<String>,
     /// The axis in the TCP's frame that `ux uy uz` point along: x, y, z, -x, -y or -z; of a program that from the spindle
-    /// to the tip
-    #[arg(long, value_name = "AXIS", default_value = "z", allow_hyphen_values = true, value_parser = input::tool_axis)]
-    tool_axis: Unit<Vector3<f64>>,
+    /// to the tip. Where left out, that of the cell, or z where the description tells it
+    #[arg(long, value_name = "AXIS", allow_hyphen_values = true, value_parser = input::tool_axis)]
+    tool_axis: Option<Unit<Vector3<f64>>>,
     /// Write the same as JSON to FILE
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
@@ -70,50 +73,55 @@ pub struct Arguments {
 
 /// Solves the path.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let (robot, _) = input::robot(&arguments.robot)?;
+    let (robot, behind) = (arguments.robot.as_ref(), arguments.path.as_ref());
+    let (mut setup, file) = arguments.cell.setup(robot, behind, "robstiff path PATH")?;
+    let file = file.ok_or_else(|| Failure::Usage("no PATH is given".to_owned()))?;
     let start = match &arguments.start {
-        Some(text) => Some(input::coordinates_of("--start", text, &robot)?),
+        Some(text) => Some(input::coordinates_of("--start", text, &setup.robot)?),
         None => None,
     };
-    let options = arguments.program.options(&arguments.path)?;
-    let mut path = ToolPath::open(&arguments.path, &robot, arguments.tool_axis, &options)?;
-    for warning in &path.warnings {
-        output::complain(format_args!("warning: {warning}"));
-    }
+    let place = arguments.place.as_deref().map(place).transpose().map_err(Failure::Usage)?;
+    let opened = setup.open(&input::Asked {
+        path: &file,
+        tool_axis: arguments.tool_axis,
+        spindle_axis: arguments.cutting.spindle_axis(),
+        place,
+        program: &arguments.program,
+    })?;
+    let path = &opened.path;
     if start.is_some() && path.gives_joints() {
         return Err(Failure::Usage(format!(
             "--start: {} gives joint coordinates, which are taken as they are",
-            arguments.path.display()
+            file.display()
         )));
     }
-    let mut stands = Matrix4::identity();
-    if let Some(text) = &arguments.place {
-        refuse_if_in_no_frame(&path)?;
-        stands = place(text).map_err(Failure::Usage)?;
-        path = path.placed(&stands);
-    }
-    let program = arguments.robot_program.read(&arguments.robot, &robot, &arguments.path, arguments.out.as_ref())?;
+    let program = arguments.robot_program.read(setup.robot_file(), &setup.robot, &file, arguments.out.as_ref())?;
     let out = arguments.out.as_ref().filter(|_| program.is_none());
     let mut files = Files::default();
-    let request = arguments.cutting.read(arguments.tool_axis, path.is_program, &mut files)?;
+    let request = arguments.cutting.read(&setup, opened.spindle, &mut files)?;
+    let robot = &setup.robot;
     if request.is_some() {
-        input::refuse_if_rigid(&robot)?;
+        input::refuse_if_rigid(robot, "`robstiff path` with a cut or forces")?;
     }
-    files.protect(&arguments.robot);
-    files.protect(&arguments.path);
+    setup.protect(&mut files);
+    files.protect(&file);
     let foreseen = program.as_ref().map(|program| program.foreseen());
     files.foresee(out.into_iter().chain(&arguments.json).chain(foreseen.iter().flatten()))?;
     let solved = output::working("solving the path", |_| {
-        with_robot!(&robot, |robot| solve(&robot, &path, start.as_deref(), request.as_ref()))
+        with_robot!(robot, |robot| solve(&robot, path, setup.cell(), start.as_deref(), request.as_ref()))
     })?;
-    if let Some(out) = out {
-        files.add(out, table(&robot, &solved));
+    for fast in &solved.too_fast {
+        output::complain(format_args!("warning: {}", too_fast(fast, robot, &path.file)));
     }
-    let mut document = document(&robot, &solved);
-    let axis = (!path.gives_joints()).then(|| input::axis_name(&arguments.tool_axis));
-    let mut page = page(&robot, &arguments.path.display().to_string(), &solved, axis);
+    if let Some(out) = out {
+        files.add(out, table(robot, &solved));
+    }
+    let mut document = document(robot, &solved);
+    let axis = opened.tool_axis.filter(|_| !path.gives_joints()).map(|axis| input::axis_name(&axis));
+    let mut page = page(robot, &file.display().to_string(), &solved, axis);
     if let Some(program) = &program {
-        let sent = with_robot!(&robot, |arm| program.compose(&arm, &robot, &path, &stands, &solved.commanded()))?;
+        let commanded = solved.commanded();
+        let sent = with_robot!(robot, |arm| program.compose(&arm, robot, path, &opened.place, &commanded))?;
         document["program"] = sent.document();
         page += &sent.page();
         sent.files.into_iter().for_each(|(path, text)| files.add(path, text));
@@ -132,6 +140,7 @@ struct Solved {
     jumps: Vec<Jump>,
     closed_form: bool,
     cutting: Option<Cutting>,
+    too_fast: Vec<TooFast>,
 }
 
 struct Point {
@@ -158,12 +167,14 @@ impl Solved {
 fn solve<const N: usize>(
     robot: &impl Robot<N>,
     path: &ToolPath,
+    cell: Option<&Cell>,
     start: Option<&[f64]>,
     request: Option<&CuttingRequest>,
 ) -> Result<Solved, Failure> {
     let start = start.map(SVector::<f64, N>::from_column_slice);
     let solved = path.solve(robot, start.as_ref())?;
     let cutting = request.map(|request| request.compute(robot, path, &solved)).transpose()?;
+    let too_fast = cell.map(|cell| cell.too_fast(&solved)).unwrap_or_default();
     let points = solved.points.into_iter().map(|point| Point {
         line: point.line,
         q: point.q.iter().copied().collect(),
@@ -176,16 +187,18 @@ fn solve<const N: usize>(
         tool: point.tool,
     });
     let closed_form = Inverse::new(robot).has_closed_form();
-    Ok(Solved { points: points.collect(), jumps: solved.jumps, closed_form, cutting })
+    Ok(Solved { points: points.collect(), jumps: solved.jumps, closed_form, cutting, too_fast })
 }
 
-/// That `--place` has a frame to put somewhere.
-pub fn refuse_if_in_no_frame(path: &ToolPath) -> Result<(), Failure> {
-    if path.gives_joints() {
-        let message = format!("--place: {} gives joint coordinates, which stand in no frame", path.file);
-        return Err(Failure::Usage(message));
-    }
-    Ok(())
+/// What is said of a joint that the path moves faster than it can.
+fn too_fast(fast: &TooFast, robot: &Description, file: &str) -> String {
+    let joint = &robot.joints[fast.joint - 1];
+    let [speed, most] = [fast.speed, fast.most].map(|speed| decimals(joint.for_people(speed), 1));
+    let (unit, points) = (joint.people_unit(), count(fast.points, "point"));
+    format!(
+        "{file}:{}: joint {} would move at {speed} {unit}/s, and can at {most} {unit}/s; too fast to {points}",
+        fast.line, fast.joint
+    )
 }
 
 /// A frame from `x,y,z,roll,pitch,yaw`, as `--place` gives it.

@@ -22,9 +22,11 @@ use content::{Kind, Row, Scene};
 /// arrow keys; without scripts and on paper it is a drawing.
 #[derive(clap::Args)]
 pub struct Arguments {
-    /// The robot's description, or the name of a robot in the catalogue
-    #[arg(value_name = "ROBOT.yaml")]
-    robot: PathBuf,
+    /// The robot's description, or the name of a robot in the catalogue; left out with `--cell`
+    #[arg(value_name = "ROBOT.yaml", required_unless_present = "cell")]
+    robot: Option<PathBuf>,
+    #[command(flatten)]
+    cell: input::CellArgument,
     #[command(flatten)]
     at: input::At,
     /// A table of joint coordinates `q1 [deg]` .. and, where there are, forces `Fx [N]` .. and moments `Mx [Nm]` .., row by row
@@ -53,37 +55,42 @@ pub struct Arguments {
 
 /// Draws.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let (robot, _) = input::robot(&arguments.robot)?;
-    input::complain_if_rigid(&robot);
+    let (mut setup, more) = arguments.cell.setup(arguments.robot.as_ref(), None, "robstiff view")?;
+    if more.is_some() {
+        return Err(Failure::Usage("the cell names its robot: leave ROBOT.yaml out".to_owned()));
+    }
+    setup.mount()?;
+    let robot = &setup.robot;
+    input::complain_if_rigid(robot);
     let mut files = Files::default();
-    files.protect(&arguments.robot);
+    setup.protect(&mut files);
     arguments.path.iter().for_each(|path| files.protect(path));
     files.foresee(arguments.json.iter().chain([&arguments.out]))?;
     let scene = if let Some(path) = &arguments.campaign {
         let campaign = input::campaign(path)?;
         files.protect_campaign(&campaign);
-        Scene::of_campaign(&robot, &campaign)?
+        Scene::of_campaign(robot, &campaign)?
     } else if let Some(path) = &arguments.path {
         // As in the header, the name may carry its unit.
         let column = arguments.column.as_deref().map(|name| name.split('[').next().unwrap_or(name).trim());
-        let table = JointTable::read(path, &robot, column)?;
+        let table = JointTable::read(path, robot, column)?;
         for warning in &table.warnings {
             output::complain(format_args!("warning: {warning}"));
         }
-        Scene::new(&robot, Kind::Path, &rows(table, arguments.force)).coloured_by(column)
+        Scene::new(robot, Kind::Path, &rows(table, arguments.force)).coloured_by(column)
     } else {
-        let q = arguments.at.pose(&robot)?;
+        let q = arguments.at.pose(robot)?;
         let row = Row { q, wrench: arguments.force.map(Force::wrench), value: None };
-        Scene::new(&robot, Kind::Pose, &[row])
+        Scene::new(robot, Kind::Pose, &[row])
     };
     let scene = scene.within(arguments.tolerance)?;
-    let document = scene.document(&robot);
-    files.add(&arguments.out, page::html(&robot, &scene, &document));
+    let document = scene.document(robot);
+    files.add(&arguments.out, page::html(robot, &scene, &document));
     if let Some(path) = &arguments.json {
         files.add(path, json::document(&document));
     }
     let said = files.write()?;
-    output::print(summary(&robot, &scene) + &said)
+    output::print(summary(robot, &scene) + &said)
 }
 
 fn rows(table: JointTable, force: Option<Force>) -> Vec<Row> {

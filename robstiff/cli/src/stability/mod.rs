@@ -9,7 +9,7 @@ use std::path::PathBuf;
 
 use robstiff::analysis::translational_compliance;
 use robstiff::elements::{compliance_under, contributions, contributions_under};
-use robstiff::nalgebra::{Matrix3, SVector, Vector3, Vector6};
+use robstiff::nalgebra::{Matrix3, SVector, Unit, Vector3, Vector6};
 use robstiff::{Robot, with_robot};
 use robstiff_machining::milling::{Cut, Forces};
 use robstiff_machining::stability::{FeedLimit, Modes, mass_of_first_mode, over_feeds};
@@ -18,7 +18,7 @@ use robstiff_robots::quantity::{self, Dimension};
 use serde_json::{Value, json};
 
 use crate::failure::Failure;
-use crate::input::{axis, positive, whole};
+use crate::input::{Setup, axis, positive, whole};
 use crate::output::{self, Files};
 use crate::{forces, input, json};
 use lobes::Lobe;
@@ -30,12 +30,14 @@ use lobes::Lobe;
 /// another matter, and not looked at.
 #[derive(clap::Args)]
 pub struct Arguments {
-    /// The robot's description, or the name of a robot in the catalogue
-    #[arg(value_name = "ROBOT.yaml")]
-    robot: PathBuf,
-    /// The cut (robstiff/docs/commands/forces.md); its depth is the one that is judged
+    /// The robot's description, or the name of a robot in the catalogue; left out with `--cell`
+    #[arg(value_name = "ROBOT.yaml", required_unless_present = "cell")]
+    robot: Option<PathBuf>,
+    /// The cut (robstiff/docs/commands/forces.md); its depth is the one that is judged. Where left out, that of the cell
     #[arg(value_name = "CUT.yaml")]
-    cut: PathBuf,
+    cut: Option<PathBuf>,
+    #[command(flatten)]
+    cell: input::CellArgument,
     #[command(flatten)]
     at: input::At,
     /// The frequency of the arm's first mode as measured in this pose, e.g. "15 Hz"; by the links' masses where left out
@@ -44,13 +46,15 @@ pub struct Arguments {
     /// The damping ratio of the arm's modes; without it, the arm is taken to have no damping
     #[arg(long, value_name = "RATIO", default_value_t = 0.0, allow_hyphen_values = true, value_parser = ratio)]
     damping: f64,
-    /// The axis of the spindle in the TCP's frame, from the spindle to the tip: x, y, z, -x, -y, -z, or a vector "0,0,1"
-    #[arg(long, value_name = "AXIS", default_value = "z", allow_hyphen_values = true, value_parser = axis)]
-    tool_axis: Vector3<f64>,
+    /// The axis of the spindle in the TCP's frame, from the spindle to the tip: x, y, z, -x, -y, -z, or a vector "0,0,1".
+    /// Where left out, that of the cell, or z where the description tells it
+    #[arg(long, value_name = "AXIS", allow_hyphen_values = true, value_parser = axis)]
+    tool_axis: Option<Vector3<f64>>,
     /// The speed of the spindle, e.g. "9000 rpm", in place of the cut's
     #[arg(long, value_name = "SPEED", allow_hyphen_values = true, value_parser = positive(Dimension::RotationalSpeed))]
     speed: Option<f64>,
-    /// The speeds of the lobe diagram, e.g. "3000 rpm, 18000 rpm"; where left out from a fifth to twice the speed
+    /// The speeds of the lobe diagram, e.g. "3000 rpm, 18000 rpm"; where left out those of the cell's
+    /// spindle, or from a fifth to twice the speed
     #[arg(long, value_name = "FROM,TO", allow_hyphen_values = true, value_parser = lobes::range)]
     speeds: Option<[f64; 2]>,
     /// The greatest depth looked at, e.g. "10 mm", at least the cut's; where left out, ten times that
@@ -94,9 +98,13 @@ pub struct Predicted {
 
 /// Predicts.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let (robot, _) = input::robot(&arguments.robot)?;
-    input::refuse_if_rigid(&robot)?;
-    let file = input::cut(&arguments.cut)?;
+    let (robot, behind) = (arguments.robot.as_ref(), arguments.cut.as_ref());
+    let (mut setup, given) = arguments.cell.setup(robot, behind, "robstiff stability CUT.yaml")?;
+    input::refuse_if_rigid(&setup.robot, "`robstiff stability`")?;
+    let Some(cut_path) = setup.cut(given.as_ref()) else {
+        return Err(Failure::Usage("no CUT.yaml is given, and no cell that names one under `cut:`".to_owned()));
+    };
+    let file = input::cut(&cut_path)?;
     let Forces::Model(cut) = &file.forces else {
         return Err(Failure::new(
             "a measured force does not say how it changes with the chip; give the cut with tool and material",
@@ -107,7 +115,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         return Err(Failure::new(format!(
             "{} gives no `speed` of the spindle, on which the depth depends; write it there, or give it: \
              --speed \"9000 rpm\"",
-            arguments.cut.display()
+            cut_path.display()
         )));
     };
     if let Some(greatest) = arguments.greatest.filter(|greatest| *greatest < cut.depth) {
@@ -116,31 +124,34 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             "--greatest: {greatest} mm is less than the depth of the cut, {depth} mm, which is the one that is judged"
         )));
     }
-    let q = arguments.at.pose(&robot)?;
+    setup.mount()?;
+    let robot = &setup.robot;
+    let axis = setup.spindle("--tool-axis", arguments.tool_axis)?.ok_or_else(|| setup.lacks_axis("--tool-axis"))?;
+    let q = arguments.at.pose(robot)?;
     let mut files = Files::default();
-    files.protect(&arguments.robot);
-    forces::protect(&mut files, &arguments.cut, &file);
+    setup.protect(&mut files);
+    forces::protect(&mut files, &cut_path, &file);
     files.foresee(arguments.out.iter().chain(&arguments.json))?;
-    let predicted = with_robot!(&robot, |arm| predict(&arm, &robot, cut, [speed, period], &q, arguments))?;
+    let predicted = with_robot!(robot, |arm| predict(&arm, &setup, cut, ([speed, period], axis), &q, arguments))?;
     if let Some(path) = &arguments.out {
         files.add(path, picture::svg(&predicted, cut));
     }
     if let Some(path) = &arguments.json {
-        files.add(path, json::document(&document(&predicted, &robot, cut, &q)));
+        files.add(path, json::document(&document(&predicted, robot, cut, &q)));
     }
     let said = files.write()?;
-    output::print(page::page(&predicted, &robot, cut, arguments.frequency.is_some()) + &said)
+    output::print(page::page(&predicted, robot, cut, arguments.frequency.is_some()) + &said)
 }
 
 fn predict<const N: usize>(
     arm: &impl Robot<N>,
-    robot: &Description,
+    setup: &Setup,
     cut: &Cut,
-    [speed, period]: [f64; 2],
+    ([speed, period], axis): ([f64; 2], Unit<Vector3<f64>>),
     q: &[f64],
     arguments: &Arguments,
 ) -> Result<Predicted, Failure> {
-    let q = SVector::from_column_slice(q);
+    let (robot, q) = (&setup.robot, SVector::from_column_slice(q));
     let compliance = translational_compliance(&arm.compliance(&q));
     if compliance.amax() == 0.0 {
         return Err(Failure::new(format!("{} does not yield in this pose", robot.name)));
@@ -156,7 +167,7 @@ fn predict<const N: usize>(
             Failure::new(format!("{error}; measure the first mode at the tool and give it: --frequency \"15 Hz\""))
         })?,
     };
-    let axis = arm.transform(&q).fixed_view::<3, 3>(0, 0) * arguments.tool_axis;
+    let axis = arm.transform(&q).fixed_view::<3, 3>(0, 0) * axis.as_ref();
     let greatest = arguments.greatest.unwrap_or(10.0 * cut.depth);
     // Masses stay what they are when the cut takes up the backlash.
     let under = |force: &Vector3<f64>| {
@@ -177,7 +188,8 @@ fn predict<const N: usize>(
     let change = |feed: &FeedLimit| (feed.modes.compliance() - compliance).amax() / compliance.amax();
     let stiffens = feeds.iter().any(|feed| change(feed) > ROUNDING);
     let mass = first.or_else(|| modes.mass());
-    let lobes = lobes::over_speeds(&feeds, cut, lobes::speeds(arguments.speeds, speed));
+    let of_spindle = setup.cell().and_then(|cell| cell.spindle.as_ref()?.speeds);
+    let lobes = lobes::over_speeds(&feeds, cut, lobes::speeds(arguments.speeds.or(of_spindle), speed));
     Ok(Predicted { mass, modes, stiffens, axis, greatest, feeds, lobes })
 }
 

@@ -49,7 +49,7 @@ pub struct Arguments {
 /// Writes the folder.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let (robot, file) = input::robot(&arguments.robot)?;
-    input::refuse_if_rigid(&robot)?;
+    input::refuse_if_rigid(&robot, "`robstiff start`")?;
     let out = arguments.out.clone().unwrap_or_else(|| PathBuf::from(format!("{}-campaign", stem(&file))));
     refuse_if_used(&out)?;
     let (named, copy) = description(&arguments.robot)?;

@@ -182,6 +182,12 @@ impl ToolPath {
         Self { file, points, warnings: Vec::new(), is_program: true, tool, lines: Lines::new(text) }
     }
 
+    /// Whether it gives the direction of the tool's axis anywhere, and leaves the turn about it free.
+    pub fn gives_axes(&self) -> bool {
+        let is_axis = |orientation: &Orientation| matches!(orientation, Orientation::Axis { .. });
+        self.points.iter().any(|point| matches!(&point.goal, Goal::Tool(target) if is_axis(&target.orientation)))
+    }
+
     /// The same path when the frame that its poses are given in stands at
     /// `place` (homogeneous, 4 x 4, m) in the base frame. Joint coordinates stay.
     #[must_use]
