@@ -38,13 +38,13 @@ pub struct Generic<const N: usize> {
     weight: Option<Weight<N>>,
 }
 
-/// One row of the DH table, `before * motion(q) * after`.
+/// One row of the DH table: `motion(q) * still`, of the modified convention `still * motion(q)`.
 #[derive(Clone, Debug, PartialEq)]
 struct Row {
     kind: JointKind,
     limits: Option<[f64; 2]>,
-    before: Matrix4<f64>,
-    after: Matrix4<f64>,
+    moves_first: bool,
+    still: Matrix4<f64>,
 }
 
 /// Evaluates an expression with a robot whose number of joints is known only at
@@ -139,7 +139,7 @@ impl<const N: usize> Generic<N> {
     fn frames_behind<T: Real>(&self, stand: &SVector<T, N>) -> [Matrix4<T>; N] {
         let mut frame = self.base.map(T::of);
         core::array::from_fn(|i| {
-            frame *= self.joints[i].transform(stand[i]);
+            frame = self.joints[i].behind(frame, stand[i]);
             frame
         })
     }
@@ -168,21 +168,39 @@ impl Row {
         let z = rotation_z(sin_cos(joint.theta)) * translation([0.0, 0.0, joint.d]);
         // A rotation about x and a translation along it commute.
         let x = translation([joint.a, 0.0, 0.0]) * rotation_x(sin_cos(joint.alpha));
-        let (before, after) = match convention {
-            Convention::Standard => (z, x),
-            Convention::Modified => (x * z, Matrix4::identity()),
+        // So do a turn about z and a slide along it, the joint's motion among them.
+        let still = match convention {
+            Convention::Standard => z * x,
+            Convention::Modified => x * z,
         };
-        Self { kind: joint.kind, limits: joint.limits, before, after }
+        Self { kind: joint.kind, limits: joint.limits, moves_first: convention == Convention::Standard, still }
     }
 
-    /// `T_i` at a joint coordinate; turning about z and sliding along it
-    /// commute with the row's own turn and slide.
-    fn transform<T: Real>(&self, q: T) -> Matrix4<T> {
-        let motion = match self.kind {
-            JointKind::Revolute => rotation_z(q.sin_cos()),
-            JointKind::Prismatic => translation([T::zero(), T::zero(), q]),
-        };
-        self.before.map(T::of) * motion * self.after.map(T::of)
+    /// The frame behind this row, of the one before it and the joint coordinate.
+    fn behind<T: Real>(&self, before: Matrix4<T>, q: T) -> Matrix4<T> {
+        let still = self.still.map(T::of);
+        if self.moves_first { self.moved(before, q) * still } else { self.moved(before * still, q) }
+    }
+
+    /// A frame turned about its z axis, or slid along it: of the columns only those that change.
+    fn moved<T: Real>(&self, mut frame: Matrix4<T>, q: T) -> Matrix4<T> {
+        match self.kind {
+            JointKind::Revolute => {
+                let (s, c) = q.sin_cos();
+                for row in 0..3 {
+                    let (x, y) = (frame[(row, 0)], frame[(row, 1)]);
+                    frame[(row, 0)] = x * c + y * s;
+                    frame[(row, 1)] = y * c - x * s;
+                }
+            }
+            JointKind::Prismatic => {
+                for row in 0..3 {
+                    let slide = frame[(row, 2)] * q;
+                    frame[(row, 3)] += slide;
+                }
+            }
+        }
+        frame
     }
 }
 
@@ -297,22 +315,22 @@ fn sin_cos(angle: f64) -> (f64, f64) {
     quarter_turns(angle).map_or_else(|| Real::sin_cos(angle), sin_cos_of_turns)
 }
 
-fn translation<T: Real>([x, y, z]: [T; 3]) -> Matrix4<T> {
-    let (o, i) = (T::zero(), T::one());
+fn translation([x, y, z]: [f64; 3]) -> Matrix4<f64> {
+    let (o, i) = (0.0, 1.0);
     Matrix4::new(i, o, o, x, o, i, o, y, o, o, i, z, o, o, o, i)
 }
 
-fn rotation_x<T: Real>((s, c): (T, T)) -> Matrix4<T> {
-    let (o, i) = (T::zero(), T::one());
+fn rotation_x((s, c): (f64, f64)) -> Matrix4<f64> {
+    let (o, i) = (0.0, 1.0);
     Matrix4::new(i, o, o, o, o, c, -s, o, o, s, c, o, o, o, o, i)
 }
 
-fn rotation_y<T: Real>((s, c): (T, T)) -> Matrix4<T> {
-    let (o, i) = (T::zero(), T::one());
+fn rotation_y((s, c): (f64, f64)) -> Matrix4<f64> {
+    let (o, i) = (0.0, 1.0);
     Matrix4::new(c, o, s, o, o, i, o, o, -s, o, c, o, o, o, o, i)
 }
 
-fn rotation_z<T: Real>((s, c): (T, T)) -> Matrix4<T> {
-    let (o, i) = (T::zero(), T::one());
+fn rotation_z((s, c): (f64, f64)) -> Matrix4<f64> {
+    let (o, i) = (0.0, 1.0);
     Matrix4::new(c, -s, o, o, s, c, o, o, o, o, i, o, o, o, o, i)
 }

@@ -61,6 +61,8 @@ fn drawn(robot: &Description, count: usize) -> Poses {
 fn campaign(simulated: &Simulated) -> Campaign {
     Campaign {
         name: simulated.scenario.name.clone(),
+        date: String::new(),
+        operator: String::new(),
         path: PathBuf::new(),
         robot_path: PathBuf::new(),
         observations_path: PathBuf::new(),

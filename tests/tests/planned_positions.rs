@@ -47,6 +47,8 @@ fn measured(robot: &Description, hidden: &[Effect], payloads: &[f64], poses: Pos
     let simulated = simulate(robot, &scenario).expect("measured");
     Campaign {
         name: scenario.name,
+        date: String::new(),
+        operator: String::new(),
         path: PathBuf::new(),
         robot_path: PathBuf::new(),
         observations_path: PathBuf::new(),

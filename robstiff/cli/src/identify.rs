@@ -7,6 +7,7 @@ use robstiff_identify::identify::{
     Basis, Covariance, Estimate, Identification, NoiseSource, Visibility, identify, misread, noise_not_used,
     off_by_one_factor,
 };
+use robstiff_identify::rounded;
 use robstiff_robots::Description;
 use serde_json::{Value, json};
 
@@ -39,7 +40,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     files.foresee(arguments.json.iter().chain([&robot]))?;
     files.foresee_robot(&robot, &campaign.robot)?;
     let found = identify(&campaign).map_err(Failure::about(&campaign))?;
-    let written = input::moved(&found.description, (&campaign.robot, &campaign.robot_path), &arguments.out);
+    let written = rounded(found.description.clone(), &campaign.robot);
+    let written = input::moved(&written, (&campaign.robot, &campaign.robot_path), &arguments.out);
     files.add(robot, written.to_yaml());
     if let Some(path) = &arguments.json {
         files.add(path, json::document(&document(&campaign, &found)));

@@ -24,8 +24,11 @@ mod observe;
 pub mod plan;
 mod probability;
 mod regression;
+mod rounded;
 mod select;
 pub mod simulate;
 pub mod trace;
 pub mod triage;
 mod words;
+
+pub use rounded::rounded;

@@ -2,9 +2,9 @@
 //! hidden.
 //!
 //! - A model that leaves out a number that was hidden, a link's torsion beside its
-//!   bending, has others in its place; so does one with fewer play operators. Their
-//!   values are those of another model, as are those of a drift that is told to
-//!   follow something else. Then neither the joints are compared nor the numbers of
+//!   bending, has others in its place; so does one with fewer play operators, or of
+//!   other radii. Their values are those of another model, as are those of a drift
+//!   that is told to follow something else, and of a creep. Then neither the joints are compared nor the numbers of
 //!   that effect nor, where it is the operators that are fewer, anything of that
 //!   joint. A soft base and a soft tool share one translation.
 //! - A load cell of which all axes read too much by the same factor is the same as
@@ -40,7 +40,12 @@ impl Truths {
         for one in hidden {
             let (name, Some(told)) = (one.name(), named(one)) else { continue };
             whole &= tells_all(one, told) && same_operators(one, Some(told)) && same_course(one, told);
-            let is_another = others.contains(&one.place()) || !tells_all(one, told) || !same_course(one, told);
+            let is_another = others.contains(&one.place())
+                || !tells_all(one, told)
+                || !same_course(one, told)
+                || !same_radii(one, told)
+                // A trace has the growth over a factor of e from a minute on, not over ten from the onset.
+                || matches!(one, Hidden::Creep { .. });
             if is_another || (cells > 1 && name.starts_with("load_cell")) {
                 continue;
             }
@@ -80,16 +85,25 @@ fn same_operators(hidden: &Hidden, told: Option<&Name>) -> bool {
     told.is_some_and(|told| of(told) == operators.len())
 }
 
-/// Whether a drift is told to follow what it does follow.
+/// Whether a drift is told to follow what it does follow. One that a trace tells by the time is by that from the
+/// first row to the last, and has no rate.
 fn same_course(hidden: &Hidden, told: &Name) -> bool {
     let Hidden::ThermalDrift { follows, .. } = hidden else { return true };
-    let unit = match follows {
-        Follows::Time => "m/h",
-        Follows::Temperature => "m/K",
-        Follows::Settling(_) => "m",
-    };
-    told.parameters.iter().find(|number| number.name == "dx").is_some_and(|number| number.unit == unit)
+    *follows == Follows::Temperature
+        && told.parameters.iter().find(|number| number.name == "dx").is_some_and(|number| number.unit == "m/K")
 }
+
+/// Whether play operators are told with the radii that they have: weights of others are other numbers.
+fn same_radii(hidden: &Hidden, told: &Name) -> bool {
+    let is_radius = |(name, _): &(String, f64)| name.starts_with("radius");
+    hidden.parameters().iter().filter(|one| is_radius(one)).all(|(name, radius)| {
+        let told = told.parameters.iter().find(|number| number.name == *name);
+        told.is_some_and(|number| (number.value / radius - 1.0).abs() < SAME_RADIUS)
+    })
+}
+
+/// Radii that differ by less than this part are the same.
+const SAME_RADIUS: f64 = 0.05;
 
 /// The factor of the load cell's axes that are not told to be off.
 fn common_scale(hidden: &Hidden, told: &Name) -> Option<f64> {

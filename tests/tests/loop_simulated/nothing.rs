@@ -17,18 +17,18 @@ fn nothing_of_six() {
     nothing_is_named(&six_axis());
 }
 
-/// A name in at most one of twenty: the level is 1 % a campaign.
+/// A name in at most one of ten: the level is 1 % a campaign.
 fn nothing_is_named(arm: &Description) {
-    let traces: Vec<(u64, Trace)> = (100..120).map(|seed| (seed, traced(arm, &[], seed))).collect();
-    assert_most(&format!("no name, {}", arm.name), 19, &traces, |_, trace| {
+    let traces: Vec<(u64, Trace)> = (100..110).map(|seed| (seed, traced(arm, &[], seed))).collect();
+    assert_most(&format!("no name, {}", arm.name), 9, &traces, |_, trace| {
         trace.effects.is_empty() && (0.9..1.1).contains(&(trace.after.rms / FLOOR))
     });
     // Another 1 % finds structure.
     let adequate = |_, trace: &Trace| trace.verdict == Verdict::Adequate;
-    assert_most(&format!("adequate, {}", arm.name), 18, &traces, adequate);
+    assert_most(&format!("adequate, {}", arm.name), 9, &traces, adequate);
 
     // The joints are where they are said to be, within what is said: some
-    // hundred deviations over their standard deviations, of mean square 1.
+    // fifty deviations over their standard deviations, of mean square 1.
     let mut deviations = Vec::new();
     for (seed, trace) in traces.iter().filter(|(_, trace)| trace.verdict == Verdict::Adequate) {
         let truth = scattered(arm, 0.7..1.3, seed + SCATTER_SEED);
@@ -38,7 +38,7 @@ fn nothing_is_named(arm: &Description) {
     }
     let spread = (deviations.iter().map(|d| d * d).sum::<f64>() / deviations.len() as f64).sqrt();
     println!("{} deviations of spread {spread:.3}", deviations.len());
-    assert!(deviations.len() > 85 && (0.8..1.25).contains(&spread), "{spread}");
+    assert!(deviations.len() > 40 && (0.8..1.25).contains(&spread), "{spread}");
     assert!(deviations.iter().all(|deviation| deviation.abs() < 4.5), "{deviations:?}");
 }
 

@@ -71,22 +71,26 @@ fn backlash_is_found_where_some_loads_take_the_preload_off() {
 }
 
 /// A preload that the description does not declare is in no candidate. Nothing else of the arm than the gear
-/// itself is named for it, and never as the whole truth.
-fn is_left_open(what: &str, hidden: &Hidden, kind: &str) {
-    assert_most(what, 6, &traces(&[SAG], hidden), |_, trace| {
+/// itself is named for it. `open` traces at least are not called the whole truth.
+fn names_the_gear_at_most(what: &str, hidden: &Hidden, kind: &str, open: usize) {
+    let traces = traces(&[SAG], hidden);
+    assert_most(what, 6, &traces, |_, trace| {
         let of_arm = trace.effects.iter().filter(|named| !named.effect.is_of_rig());
-        trace.verdict != Verdict::Explained && of_arm.map(|named| named.effect.kind()).all(|named| named == kind)
+        of_arm.map(|named| named.effect.kind()).all(|named| named == kind)
     });
+    assert_most(what, open, &traces, |_, trace| trace.verdict != Verdict::Explained);
 }
 
 #[test]
 fn hardening_under_a_preload_that_is_not_declared_is_left_open() {
-    is_left_open("hardening", &HARDENS.into(), "stiffness_nonlinearity");
+    names_the_gear_at_most("hardening", &HARDENS.into(), "stiffness_nonlinearity", 6);
 }
 
+/// Where the load takes the preload off a few readings only, they are reported as outlying ones.
 #[test]
-fn backlash_under_a_preload_that_is_not_declared_is_left_open() {
-    is_left_open("backlash", &Hidden::LostMotion { joint: 2, gap: 4e-4, knee: 120.0 }, "lost_motion");
+fn backlash_under_a_preload_that_is_not_declared_is_its_gear_or_left_open() {
+    let hidden = Hidden::LostMotion { joint: 2, gap: 4e-4, knee: 120.0 };
+    names_the_gear_at_most("backlash", &hidden, "lost_motion", 4);
 }
 
 #[test]

@@ -10,7 +10,7 @@ pub struct Report {
     pub robot: String,
     /// One line on the robot.
     pub description: String,
-    /// What the campaign calls itself.
+    /// What the campaign calls itself, when it was measured and by whom.
     pub campaign: String,
     /// The finding in one sentence.
     pub headline: String,

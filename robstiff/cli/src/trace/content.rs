@@ -32,7 +32,7 @@ pub fn report(
     Ok(Report {
         robot: trace.robot.clone(),
         description: campaign.robot.description.trim().to_owned(),
-        campaign: campaign.name.clone(),
+        campaign: about(campaign),
         headline: finding::headline(trace, campaign),
         summary,
         verdict: trace.verdict.to_string(),
@@ -71,6 +71,13 @@ pub fn report(
         warnings: campaign.warnings.clone(),
         origins: origins(trace, campaign, seed),
     })
+}
+
+/// What the campaign calls itself, when it was measured and by whom.
+fn about(campaign: &Campaign) -> String {
+    let by = if campaign.operator.is_empty() { String::new() } else { format!("measured by {}", campaign.operator) };
+    let parts = [campaign.name.clone(), campaign.date.clone(), by];
+    parts.into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join(", ")
 }
 
 fn stages(trace: &Trace) -> Vec<Stage> {

@@ -140,6 +140,8 @@ mod tests {
         let nowhere = || std::path::PathBuf::new();
         let campaign = Campaign {
             name: "x".to_owned(),
+            date: String::new(),
+            operator: String::new(),
             path: nowhere(),
             robot_path: nowhere(),
             observations_path: nowhere(),

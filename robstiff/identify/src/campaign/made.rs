@@ -180,6 +180,8 @@ impl Plan {
 pub fn campaign(robot: Description, data: Data) -> Campaign {
     Campaign {
         name: "made".to_string(),
+        date: String::new(),
+        operator: String::new(),
         path: "".into(),
         robot_path: "".into(),
         observations_path: "".into(),

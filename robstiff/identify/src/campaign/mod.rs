@@ -50,6 +50,10 @@ pub use robstiff_robots::ReadError;
 pub struct Campaign {
     /// What the file calls itself.
     pub name: String,
+    /// When it was measured, as the file says it; empty where it does not.
+    pub date: String,
+    /// Who measured; empty where the file does not say it.
+    pub operator: String,
     /// The campaign file.
     pub path: PathBuf,
     /// The robot's description file, as resolved from the campaign's folder, or its name in the

@@ -17,8 +17,8 @@ use super::{Campaign, Data, Frame, Holdout, Noise, clamped, displacements, posit
 use robstiff_robots::table::{Table, text_of};
 
 /// The fields of a campaign file.
-pub const FIELDS: [&str; 9] =
-    ["name", "robot", "observations", "kind", "columns", "wrench", "measured", "noise", "holdout"];
+pub const FIELDS: [&str; 11] =
+    ["name", "date", "operator", "robot", "observations", "kind", "columns", "wrench", "measured", "noise", "holdout"];
 
 /// Of those, the ones that are about poses and the tool: clamped axes have neither.
 const OF_POSES: [&str; 3] = ["wrench", "measured", "holdout"];
@@ -38,6 +38,8 @@ enum Kind {
 /// What the YAML file says.
 struct Plan {
     name: String,
+    date: String,
+    operator: String,
     robot: String,
     observations: String,
     kind: Kind,
@@ -104,6 +106,8 @@ impl Campaign {
             of_robot.chain(far).chain(noisy).chain(unused).chain(kept).chain(of_axes).chain(of_table).collect();
         Ok(Self {
             name: plan.name,
+            date: plan.date,
+            operator: plan.operator,
             path: path.to_owned(),
             robot_path,
             observations_path,
@@ -124,10 +128,11 @@ fn plan(document: &Document, folder: &Path) -> Option<Plan> {
     refuse_robot(document)?;
     let map = document.root().map(&FIELDS)?;
     let kinds = [("displacement", Kind::Displacement), ("position", Kind::Position), ("clamped", Kind::Clamped)];
-    let name = match map.get("name") {
-        Some(name) => name.text().map(ToOwned::to_owned),
+    let text = |field: &str| match map.get(field) {
+        Some(text) => text.text().map(ToOwned::to_owned),
         None => Some(String::new()),
     };
+    let [name, date, operator] = ["name", "date", "operator"].map(text);
     let robot = file(&map, "robot", "robot: robot.yaml", folder);
     let observations = file(&map, "observations", "observations: loads.csv", folder);
     let kind = map.require("kind", "kind: displacement").and_then(|node| node.choice(&kinds));
@@ -140,6 +145,8 @@ fn plan(document: &Document, folder: &Path) -> Option<Plan> {
     let unused = kind.map(|kind| unused(&map, kind)).unwrap_or_default();
     Some(Plan {
         name: name?,
+        date: date?,
+        operator: operator?,
         robot: robot?,
         observations: observations?,
         kind: kind?,

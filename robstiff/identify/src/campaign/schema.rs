@@ -10,6 +10,8 @@ use super::read::FIELDS;
 pub fn schema() -> Value {
     let schema = object(&FIELDS, &["robot", "observations", "kind"], |field| match field {
         "name" => text("What the campaign is called"),
+        "date" => text("When it was measured, for the report"),
+        "operator" => text("Who measured, for the report"),
         "robot" => text("The robot's description: its path from this file, or a robot of the catalogue"),
         "observations" => text("The table of what was measured: its path from this file"),
         "kind" => word(

@@ -35,6 +35,8 @@ fn offer(scene: &Scene<'_>, offers: &mut Offers) {
             Form::new("shift", vec![shift("translation", ALL)])
                 .written(move |v| written(0.0, v[0]))
                 .same_as("base_compliance@base"),
+            Form::new("turn and shift", vec![turn("rotation", ALL), shift("translation", ALL)])
+                .written(move |v| written(v[0], v[1])),
             Form::new("shift across and along", vec![shift("across", ACROSS), shift("along", EACH[2])]),
             Form::new("shifts", vec![shift("x", EACH[0]), shift("y", EACH[1]), shift("z", EACH[2])]),
             Form::new("turn", vec![turn("rotation", ALL)]).written(move |v| written(v[0], 0.0)),

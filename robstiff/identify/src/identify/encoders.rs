@@ -16,8 +16,6 @@
 
 use std::vec::Vec;
 
-use super::covariance::Covariance;
-use super::samples::Samples;
 use crate::campaign::{Displacements, Observation};
 
 /// A row whose wrench is below this share of the largest of its visit carries no
@@ -82,33 +80,4 @@ fn given(data: &Displacements) -> Option<Vec<Vec<f64>>> {
         motors.iter().zip(&row.q).enumerate().map(|(joint, (m, q))| m - q - held(joint)).collect()
     };
     Some(data.rows.iter().zip(&motors).map(of_row).collect())
-}
-
-/// What the encoders of a campaign were to a fit.
-#[derive(Clone, Debug, PartialEq)]
-pub struct EncodersRead {
-    /// The joints (from 1) whose angle behind the gear took part.
-    pub joints: Vec<usize>,
-    /// One sigma of a reading of each (rad or m), as the readings themselves say.
-    pub noise: Vec<f64>,
-    /// Whether such angles are read but took no part, for nothing tells how noisy
-    /// they are.
-    pub unused: bool,
-    /// Whether what the motors let through was taken from the readings.
-    pub motors: bool,
-}
-
-impl EncodersRead {
-    /// Of a campaign that was made ready; none where nothing was read.
-    pub fn of(data: &Displacements, samples: &Samples, covariance: &Covariance) -> Option<Self> {
-        let all = |of: fn(&Observation) -> bool| !data.rows.is_empty() && data.rows.iter().all(of);
-        let (output, motors) = (all(|row| row.encoders.is_some()), all(|row| row.motors.is_some()));
-        let joints = samples.encoders.to_vec();
-        (output || motors).then(|| Self {
-            noise: covariance.encoders.as_ref().map_or_else(Vec::new, |noise| noise.own.clone()),
-            unused: output && joints.is_empty(),
-            joints,
-            motors,
-        })
-    }
 }

@@ -8,10 +8,12 @@ use crate::model::Term;
 use crate::observe::Readings;
 use crate::regression::noise::{OUTLYING, discrepancies, rows_of_blocks};
 use crate::select::classes::{ByCandidate, Class, classes, extend, weigh_again};
-use crate::select::engine::{Engine, Found, groups};
+use crate::select::engine::Engine;
 use crate::select::folds::Nested;
+use crate::select::passes::Found;
 use crate::select::problem::moves;
 use crate::select::search::{search, with, without};
+use crate::select::unseen::groups;
 use crate::select::{Problem, Set};
 
 /// A class, and how it fares.
@@ -57,8 +59,7 @@ pub struct Judgement {
 
 /// Weighs the classes of what was found.
 pub fn weigh(engine: &Engine<'_>, found: &Found, nested: &Nested, seed: u64) -> Judgement {
-    let grams = engine.grams(&found.columns, &engine.one_group()).total;
-    let mut problem = engine.problem(&found.layout, &found.columns, grams.clone());
+    let mut problem = engine.problem_of(found);
     if problem.learns() {
         problem.learn(&found.best, 8);
     }
@@ -164,8 +165,7 @@ fn at_other_sizes(engine: &Engine<'_>, found: &Found, classes: &mut [Class], by:
     for sizes in SIZES {
         let mut other = engine.clone();
         other.sizes = sizes;
-        let grams = other.grams(&found.columns, &other.one_group()).total;
-        let mut problem = other.problem(&found.layout, &found.columns, grams);
+        let mut problem = other.problem_of(found);
         let visited = search(&mut problem, &found.best, engine.fold_width());
         extend(classes, &problem, &visited, &found.best);
         others.push((sizes, ByCandidate::of(&problem, &visited)));

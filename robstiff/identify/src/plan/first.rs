@@ -129,6 +129,8 @@ pub fn unread(visits: &[Visit]) -> Displacements {
 fn campaign(robot: &Description, data: Displacements) -> Campaign {
     Campaign {
         name: String::new(),
+        date: String::new(),
+        operator: String::new(),
         path: "".into(),
         robot_path: "".into(),
         observations_path: "".into(),

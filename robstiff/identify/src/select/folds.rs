@@ -8,9 +8,11 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::engine::{Engine, Found, groups};
+use super::engine::Engine;
+use super::passes::Found;
 use super::problem::Set;
 use super::search::{Visited, candidates_of, search};
+use super::unseen::groups;
 use crate::regression::noise::rows_of_blocks;
 
 /// The whole search, repeated.

@@ -7,7 +7,7 @@ use robstiff_robots::{Description, DhEntry, Effect, catalogue};
 use super::{Part, Scenario, Simulated, simulate};
 use crate::campaign::{Data, Displacements};
 use crate::identify::positions;
-use crate::identify::predict::{PredictedRow, Prediction};
+use crate::identify::prediction::{PredictedRow, Prediction};
 use robstiff::{Generic, Robot, State};
 
 const SCENARIO: &str = "\

@@ -3,7 +3,8 @@
 use crate::effects::Shapes;
 use crate::regression::Scales;
 use crate::regression::noise::Noise;
-use crate::select::engine::{Engine, Found, Point};
+use crate::select::engine::{Engine, Point};
+use crate::select::passes::Found;
 
 /// The best set at its optimum, and the noise that it leaves.
 #[derive(Clone, Debug)]

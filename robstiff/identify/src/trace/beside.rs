@@ -8,11 +8,13 @@ use crate::judge::thresholds::{OUTLYING_ROWS, STANDS_OUT};
 use crate::probability::chi_square_tail;
 use crate::select::always::REFLECTOR;
 use crate::select::classes::ODDS;
-use crate::select::engine::{Engine, Found};
+use crate::select::engine::Engine;
+use crate::select::passes::Found;
+use crate::select::unseen::Unseen;
 
 /// The reflector of absolute positions, where it is elsewhere than the file says. It is always fitted, so
 /// no set does without it: what counts is how far from zero it comes out.
-pub fn reflector(engine: &Engine<'_>, found: &Found) -> Option<NamedEffect> {
+pub fn reflector(found: &Found, unseen: &Unseen<'_>) -> Option<NamedEffect> {
     let fit = &found.own.fit;
     let noise = fit.variance.sqrt();
     let of = |(k, name): (usize, &'static str)| {
@@ -33,13 +35,13 @@ pub fn reflector(engine: &Engine<'_>, found: &Found) -> Option<NamedEffect> {
         lines: Vec::new(),
         probability: 1.0 - chi_square_tail(most * most, 1.0).unwrap_or(0.0),
         recurs: 1.0,
-        holdout_rms: engine.unseen_rms(&found.layout, &found.columns, &found.best, found.kappa).unwrap_or_default(),
+        holdout_rms: unseen.rms(&found.best, found.kappa).unwrap_or_default(),
         partial: false,
     })
 }
 
 /// Rows that do not belong to the others, where they are few and far off: not the tail of the others.
-pub fn outliers(engine: &Engine<'_>, found: &Found, case: &Case<'_>) -> Option<NamedEffect> {
+pub fn outliers(engine: &Engine<'_>, (found, unseen): (&Found, &Unseen<'_>), case: &Case<'_>) -> Option<NamedEffect> {
     let readings = case.observation.readings();
     let rows = &engine.noise.beyond_tails;
     let fitted = case.rows(true).len();
@@ -57,7 +59,7 @@ pub fn outliers(engine: &Engine<'_>, found: &Found, case: &Case<'_>) -> Option<N
         probability: 1.0 - (-engine.noise.for_beyond).exp(),
         class: vec![(name, 1.0)],
         recurs: 1.0,
-        holdout_rms: engine.unseen_rms(&found.layout, &found.columns, &found.best, found.kappa).unwrap_or_default(),
+        holdout_rms: unseen.rms(&found.best, found.kappa).unwrap_or_default(),
         partial: false,
     })
 }

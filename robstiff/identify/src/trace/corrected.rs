@@ -9,9 +9,12 @@ use super::errors::Misfit;
 use crate::effects::{Side, What};
 use crate::judge::thresholds::LOSS;
 use crate::model::Term;
-use crate::select::engine::{Engine, Fitted, Found, Solved};
+use crate::select::engine::{Engine, Fitted};
 use crate::select::folds::Nested;
+use crate::select::passes::Found;
 use crate::select::search::with;
+use crate::select::solve::Solved;
+use crate::select::unseen::Unseen;
 use crate::select::{Layout, Set};
 
 /// The model that is written.
@@ -26,12 +29,17 @@ pub struct Corrected {
 
 /// The best set as a description takes it; the description's own numbers alone where unseen poses are
 /// predicted better by them. None where there is no fit.
-pub fn corrected(case: &Case<'_>, engine: &Engine<'_>, found: &Found, nested: &Nested) -> Option<Corrected> {
+pub fn corrected(
+    case: &Case<'_>,
+    engine: &Engine<'_>,
+    (found, unseen): (&Found, &Unseen<'_>),
+    nested: &Nested,
+) -> Option<Corrected> {
     let readings = case.observation.readings();
     let fitted = || case.rows(true);
     let alone = readings.rms(&nested.alone, fitted());
     let set = writable(engine, found);
-    let part = |as_filed| of_set(case, &engine.fitting(as_filed), (engine, found, nested), &set);
+    let part = |as_filed| of_set(case, &engine.fitting(as_filed), (found, unseen, nested), &set);
     let mut whole = part(Fitted::Written);
     if case.scene.what == What::Positions
         && let Some(as_filed) = part(Fitted::AsFiled)
@@ -57,12 +65,12 @@ pub fn corrected(case: &Case<'_>, engine: &Engine<'_>, found: &Found, nested: &N
 fn of_set(
     case: &Case<'_>,
     engine: &Engine<'_>,
-    (whole, found, nested): (&Engine<'_>, &Found, &Nested),
+    (found, unseen, nested): (&Found, &Unseen<'_>, &Nested),
     set: &Set,
 ) -> Option<Corrected> {
     let readings = case.observation.readings();
     let layout = &found.layout;
-    let best = whole.unseen_rms(layout, &found.columns, &found.best, found.kappa)?;
+    let best = unseen.rms(&found.best, found.kappa)?;
     let is_best = *set == found.best && case.scene.what != What::Positions;
     let solved = match is_best {
         true => found.own.clone(),
@@ -71,9 +79,9 @@ fn of_set(
     let unseen = match case.scene.what {
         What::Positions => {
             let columns = engine.linearise(layout, &solved.point);
-            engine.unseen_rms(layout, &columns, set, solved.kappa)?
+            Unseen::new(engine, layout, &columns).rms(set, solved.kappa)?
         }
-        _ => engine.unseen_rms(layout, &found.columns, set, solved.kappa)?,
+        _ => unseen.rms(set, solved.kappa)?,
     };
     let rows = || case.rows(true);
     let last = readings.rms(&nested.left, rows());
@@ -89,8 +97,7 @@ const STEPS: usize = 8;
 /// has, where that makes it better.
 fn writable(engine: &Engine<'_>, found: &Found) -> Set {
     let layout = &found.layout;
-    let grams = engine.grams(&found.columns, &engine.one_group()).total;
-    let problem = engine.problem(layout, &found.columns, grams);
+    let problem = engine.problem_of(found);
     let (kept, rest): (Set, Set) = found.best.iter().partition(|form| is_kept(layout, **form));
     rest.into_iter().filter(|&form| side(layout, form) == Side::Robot).fold(kept, |set, form| {
         let score = |set: &Set| problem.judge(set).map_or(f64::NEG_INFINITY, |judged| judged.score);

@@ -4,7 +4,7 @@ use robstiff_robots::{Description, Part};
 
 use crate::select::Layout;
 use crate::select::always::{Declared, Own};
-use crate::select::engine::Solved;
+use crate::select::solve::Solved;
 use robstiff::Effect;
 
 /// What a campaign can say about a number.

@@ -1,7 +1,7 @@
 //! How uncertain an effect's numbers are since its form is: a gap that comes out larger with another knee
 //! is known no better than the knee.
 
-use crate::select::engine::Found;
+use crate::select::passes::Found;
 use crate::select::search::with;
 use crate::select::{Problem, Set};
 

@@ -232,7 +232,7 @@ pub fn trace(campaign: &Campaign, options: &Options, progress: &Progress<'_>) ->
 }
 
 /// Why a campaign cannot tell what is missing, if so.
-fn too_little(case: &Case<'_>, found: &crate::select::engine::Found) -> Option<String> {
+fn too_little(case: &Case<'_>, found: &crate::select::passes::Found) -> Option<String> {
     let readings = case.observation.readings();
     let blocks = case.training.iter().filter(|fitted| **fitted).count();
     let is_clamped = readings.reported == 1 && readings.width == 1;
@@ -246,7 +246,7 @@ fn too_little(case: &Case<'_>, found: &crate::select::engine::Found) -> Option<S
 }
 
 /// Why readings that go against the loads say nothing, if these do: no joint that they show yields.
-fn against_the_loads(campaign: &Campaign, engine: &Engine<'_>, found: &crate::select::engine::Found) -> Option<String> {
+fn against_the_loads(campaign: &Campaign, engine: &Engine<'_>, found: &crate::select::passes::Found) -> Option<String> {
     let own = engine.declared();
     let alone = engine.alone(&found.layout)?;
     let estimates = estimates(&campaign.robot, &own, Some((&found.layout, &alone)));

@@ -23,8 +23,10 @@ use crate::judge::verdict::OverNoise;
 use crate::model::Term;
 use crate::regression::Fit;
 use crate::select::classes::ODDS;
-use crate::select::engine::{Engine, Found};
+use crate::select::engine::Engine;
 use crate::select::folds;
+use crate::select::passes::Found;
+use crate::select::unseen::Unseen;
 use crate::select::{Layout, Problem, Set};
 
 /// A tracing in full.
@@ -40,8 +42,7 @@ pub fn report(
 ) -> Result<Trace, Error> {
     let readings = case.observation.readings();
     let own = engine.declared();
-    let grams = engine.grams(&found.columns, &engine.one_group()).total;
-    let problem = engine.problem(&found.layout, &found.columns, grams);
+    let problem = engine.problem_of(found);
     let effect = |of: &Weighed| effect(&problem, found, of);
     let (named, rest): (Vec<&Weighed>, Vec<&Weighed>) = judgement.classes.iter().partition(|of| of.why_not.is_none());
     let side = |of: &&Weighed| found.layout.candidates[of.class.members[0].0].kind.side;
@@ -53,12 +54,13 @@ pub fn report(
         .map(|of| suspected(found, effect(of), of))
         .collect();
     let looks_like: Vec<String> = unnamed.iter().filter(|of| of.least > 0.5).map(|of| effect(of).words()).collect();
-    let model = corrected(case, engine, found, nested)
+    let unseen = Unseen::new(engine, &found.layout, &found.columns);
+    let model = corrected(case, engine, (found, &unseen), nested)
         .ok_or_else(|| Error::NotShown("no description fits these data".into()))?;
     let before = engine.alone(&found.layout);
     let estimates_before = estimates(&campaign.robot, &own, before.as_ref().map(|solved| (&found.layout, solved)));
     let estimates = estimates(&campaign.robot, &own, Some((&found.layout, &model.solved)));
-    let by_order = order_of(engine, found, &named, nested);
+    let by_order = order_of(engine, (found, &unseen), &named, nested);
     let mut effects: Vec<NamedEffect> = by_order
         .iter()
         .map(|(of, rms)| NamedEffect {
@@ -78,8 +80,8 @@ pub fn report(
     // What does not matter is within the noise that is left.
     let names = rest.iter().filter(|of| of.class.probability > SUSPECTED && of.matters >= MATTERS);
     let names: Vec<String> = names.map(|of| effect(of).to_string()).collect();
-    let outliers = beside::outliers(engine, found, case);
-    let reflector = beside::reflector(engine, found);
+    let outliers = beside::outliers(engine, (found, &unseen), case);
+    let reflector = beside::reflector(found, &unseen);
     let many = effects.len() + usize::from(reflector.is_some());
     let outlying = outliers.as_ref().map_or(0.0, |of| of.lines.len() as f64 / case.rows(true).len() as f64);
     let (verdict, why) = concluded((many, outlying), (&names, &looks_like), judgement, over_noise);
@@ -267,14 +269,14 @@ fn suspected(found: &Found, effect: Effect, of: &Weighed) -> Suspected {
 /// those before it leave.
 fn order_of<'w>(
     engine: &Engine<'_>,
-    found: &Found,
+    (found, unseen): (&Found, &Unseen<'_>),
     named: &[&'w Weighed],
     nested: &folds::Nested,
 ) -> Vec<(&'w Weighed, f64)> {
     let mut ordered: Vec<&Weighed> = named.to_vec();
     ordered.sort_by(|a, b| b.matters.total_cmp(&a.matters));
     let mut so_far = Set::new();
-    let unseen = |set: &Set| engine.unseen_rms(&found.layout, &found.columns, set, found.kappa);
+    let unseen = |set: &Set| unseen.rms(set, found.kappa);
     let readings = engine.observation.readings();
     let rows = (0..readings.rows()).filter(|&row| engine.training[readings.block[row]]);
     let last = readings.rms(&nested.left, rows);
@@ -337,8 +339,7 @@ fn sets(found: &Found) -> Vec<(Vec<String>, f64)> {
 
 /// Full names of candidates that these readings could not show.
 fn invisible(engine: &Engine<'_>, found: &Found) -> Vec<String> {
-    let grams = engine.grams(&found.columns, &engine.one_group()).total;
-    let problem = engine.problem(&found.layout, &found.columns, grams);
+    let problem = engine.problem_of(found);
     let shown: Vec<usize> = problem.offered.iter().map(|&form| found.layout.forms[form].candidate).collect();
     let all = found.layout.candidates.iter().enumerate();
     let hidden = all.filter(|(k, of)| !shown.contains(k) && of.kind.side != Side::Unnamed);

@@ -35,7 +35,7 @@ use self::regression::{Regression, Rows, STANDS, Solved};
 use self::wild::wild_rows;
 use self::within::within_visits;
 use super::displacement::among_all;
-use super::predict::{PredictedRow, Prediction};
+use super::prediction::{PredictedRow, Prediction};
 use super::problem::rms;
 use super::readable::is_readable;
 use super::uncertainty::{correlation, covariance};
