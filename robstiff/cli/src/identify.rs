@@ -40,8 +40,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     files.foresee(arguments.json.iter().chain([&robot]))?;
     files.foresee_robot(&robot, &campaign.robot)?;
     let found = identify(&campaign).map_err(Failure::about(&campaign))?;
-    let rounded = rounded(found.description.clone(), &campaign.robot);
-    let written = input::moved(&rounded, (&campaign.robot, &campaign.robot_path), &arguments.out);
+    let written = rounded(found.description.clone(), &campaign.robot);
+    let written = input::moved(&written, (&campaign.robot, &campaign.robot_path), &arguments.out);
     files.add(robot, written.to_yaml());
     if let Some(path) = &arguments.json {
         files.add(path, json::document(&document(&campaign, &found)));

@@ -93,6 +93,8 @@ mod tests {
         for (to, expected) in [("out/new", "../../arms/maker.yaml"), ("arms", "maker.yaml"), ("", "arms/maker.yaml")] {
             let moved = moved(&robot, (&robot, &from), &folder.join(to));
             assert_eq!(moved.controller.as_ref().unwrap().nominal.as_deref(), Some(expected));
+            // It was not there before.
+            fs::create_dir_all(folder.join(to)).unwrap();
             assert_eq!(nominal(&folder.join(to).join("robot.yaml"), &moved).unwrap().unwrap().name, "Maker");
         }
         // A table that was changed is not the controller's.

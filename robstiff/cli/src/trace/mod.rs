@@ -86,8 +86,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let page = triage::page(&triage) + &page::page(&traced, &campaign, &summary);
     let document = json::document(&document::document(&traced, &triage, &campaign, &warnings));
     let report = report::html(&content::report((&traced, summary), &triage, &campaign, options.seed)?);
-    let rounded = rounded(traced.description.clone(), &campaign.robot);
-    let written = input::moved(&rounded, (&campaign.robot, &campaign.robot_path), &arguments.out);
+    let written = rounded(traced.description.clone(), &campaign.robot);
+    let written = input::moved(&written, (&campaign.robot, &campaign.robot_path), &arguments.out);
     files.add(robot, written.to_yaml());
     if let Some(path) = &arguments.json {
         files.add(path, document.clone());
