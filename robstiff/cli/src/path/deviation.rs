@@ -30,7 +30,7 @@ pub fn page(cutting: &Cutting) -> String {
     row("distance from the path", cutting.deviation.distances());
     for (axis, name) in ["along the feed", "normal to it", "along the tool axis"].into_iter().enumerate() {
         let along = |point: &DeviationPoint| point.components.map(|found| found[axis]);
-        row(name, Summary::of(cutting.deviation.in_cut().filter_map(along)));
+        row(name, cutting.deviation.summary(along));
     }
     let judged = if points.iter().any(|point| point.peak.is_some()) { ", peak of a revolution" } else { "" };
     row(&format!("error of the {}{judged}", surface(cutting)), cutting.deviation.errors());

@@ -303,7 +303,7 @@ fn a_bull_nose_has_both() {
 }
 
 #[test]
-fn rapids_ramps_and_tilted_axes_are_told() {
+fn rapids_ramps_and_tilted_axes_are_reported() {
     let mut path = steps(&[
         [-60.0, 0.0, 5.0],
         [0.0, 0.0, 5.0],
