@@ -4,6 +4,7 @@
 pub mod cutting;
 mod deviation;
 mod doubts;
+mod stock;
 
 use std::fmt::Write as _;
 use std::path::PathBuf;
@@ -82,12 +83,14 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             arguments.path.display()
         )));
     }
+    let mut stands = Matrix4::identity();
     if let Some(text) = &arguments.place {
         refuse_if_in_no_frame(&path)?;
-        path = path.placed(&place(text).map_err(Failure::Usage)?);
+        stands = place(text).map_err(Failure::Usage)?;
+        path = path.placed(&stands);
     }
     let mut files = Files::default();
-    let request = arguments.cutting.read(arguments.tool_axis, path.is_program, &mut files)?;
+    let request = arguments.cutting.read(arguments.tool_axis, path.is_program, stands, &mut files)?;
     if request.is_some() {
         input::refuse_if_rigid(&robot)?;
     }
