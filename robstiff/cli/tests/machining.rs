@@ -476,3 +476,44 @@ fn feeds_between_degrees_are_told_as_they_are() {
     let said = fail(2, &["stability", "kuka-kr270-r2700", &cut, "--at", at, "--frequency", "15 Hz", "--feeds", "1"]);
     assert!(said.contains("a whole number from 4 to 3600 is expected here"), "{said}");
 }
+
+/// The pocket's 8 mm of the cut's file are a slot for the most part; tools by number, columns by hand.
+#[test]
+fn a_stock_says_what_is_met() {
+    let folder = folder("machining-stock");
+    let (cut, pocket, told, out) =
+        (file("roughing.yaml"), file("pocket.csv"), inside(&folder, "told.json"), inside(&folder, "out.csv"));
+    let arm = ["path", "rv130hsc", &pocket, "--tool-axis", "x", "--cut", &cut];
+    let stock = ["--stock", "1420, -60, 590 .. 1580, 60, 602 mm", "--json", &told, "--out", &out];
+    let ran = run(&[&arm[..], &stock].concat());
+    assert_eq!(ran.code, 0, "{}", ran.err);
+    assert!(ran.err.contains("line 2: the path begins in the stock"), "{}", ran.err);
+    assert!(
+        ran.out.contains("cm3 are cut from the stock") && ran.out.contains("depth 2.00 mm in the mean"),
+        "{}",
+        ran.out
+    );
+    let told = json(&told);
+    let engagement = &told["deviation"]["engagement"];
+    let widths: Vec<f64> =
+        engagement["segments"].as_array().unwrap().iter().filter_map(|segment| segment["width_m"].as_f64()).collect();
+    let slots = widths.iter().filter(|width| **width > 0.018).count();
+    assert!(slots > widths.len() / 2 && widths.iter().all(|width| *width < 0.0203), "{widths:?}");
+    // There and back again: the way back from line 3 is in the air.
+    let back = &engagement["segments"][2];
+    assert_eq!((back["line"].as_u64(), back["met"].as_str()), (Some(4), Some("air")));
+    let written = fs::read_to_string(&out).unwrap();
+    assert!(written.lines().next().unwrap().contains(",ae [mm],ap [mm],Fx [N]"), "{written}");
+
+    let said = fail(2, &[&arm[..], &["--stock", "1400, -80, 590 .. 1600, 80, 590 mm"]].concat());
+    assert!(said.contains("the box has no volume"), "{said}");
+    let said = fail(2, &[&arm[..], &["--cut-of", &format!("2 = {cut}")]].concat());
+    assert!(said.contains("has no tool 2"), "{said}");
+    let wide = changed(
+        &folder,
+        "pocket.csv",
+        ["uz,feed [mm/min]\n1500,0,600,0,0,-1,3600", "uz,ae [mm]\n1500,0,600,0,0,-1,25"],
+    );
+    let said = fail(1, &["path", "rv130hsc", &wide, "--tool-axis", "x", "--cut", &cut]);
+    assert!(said.contains("wider than its tool, 20 mm") && said.contains("pocket.csv:2:1"), "{said}");
+}

@@ -4,6 +4,7 @@
 //! - [`nc`]: programs of machine tools, G-code and APT, move by move;
 //! - [`milling`], [`stability`]: the force of an end mill, and the depth of cut at which the arm
 //!   chatters, by direction of feed and spindle speed;
+//! - [`engagement`]: what is cut where along a path, from the stock;
 //! - [`deviation`], [`compensation`]: how far a cut pushes the tool off a path, and the path that
 //!   makes up for it;
 //! - [`online`]: correcting the joint targets while cutting;
@@ -18,6 +19,7 @@ pub mod cell;
 pub mod compensation;
 pub mod controller;
 pub mod deviation;
+pub mod engagement;
 mod golden;
 pub mod inverse;
 pub mod map;

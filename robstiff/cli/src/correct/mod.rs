@@ -74,7 +74,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let mut files = Files::default();
     setup.protect(&mut files);
     let spindle = setup.spindle("--tool-axis", arguments.tool_axis.map(Unit::into_inner))?;
-    let request = arguments.cutting.read(&setup, spindle, &mut files)?.map(CuttingRequest::compensating);
+    let request = arguments.cutting.read(&setup, spindle, setup.place(), &mut files)?.map(CuttingRequest::compensating);
     let nominal = input::nominal(setup.robot_file(), &setup.robot)?;
     let robot = setup.robot;
     if request.is_some() {

@@ -105,6 +105,11 @@ impl Setup {
         self.cell.as_ref().map_or(&self.file, |cell| &cell.robot_path)
     }
 
+    /// Where the work frame stands in the base frame (m).
+    pub fn place(&self) -> Matrix4<f64> {
+        self.cell.as_ref().and_then(Cell::place).unwrap_or_else(Matrix4::identity)
+    }
+
     /// Its files, which are not to be overwritten.
     pub fn protect(&self, files: &mut Files) {
         files.protect(&self.file);

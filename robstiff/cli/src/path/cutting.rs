@@ -6,13 +6,14 @@ use robstiff::Robot;
 use robstiff::nalgebra::{Matrix4, Unit, Vector3};
 use robstiff_machining::compensation::{CompensatedPoint, Keep, Sensitivity, compensate, sensitivity};
 use robstiff_machining::deviation::{
-    Deviation, ForceTable, Load, Stretch, Surface, blame, load_at_feeds, load_of_cut, removal_rate,
+    Deviation, ForceTable, Load, Operation, Stretch, Surface, blame, load_at_feeds, load_of_cut, removal_rate,
 };
 use robstiff_machining::milling::{Cut, CutFile, ForceFrame, Forces};
 use robstiff_machining::path::{SolvedPath, ToolPath};
 use robstiff_robots::quantity::Dimension;
 
 use super::doubts::{complain_of_size, lacks_wall};
+use super::stock::{Engaged, StockArguments, StockRequest};
 use crate::failure::Failure;
 use crate::input::{Setup, positive, tool_axis};
 use crate::output::{self, Files};
@@ -56,6 +57,8 @@ pub struct ForceArguments {
     /// Correct the path for the force: `--out` has what to command
     #[arg(long)]
     compensate: bool,
+    #[command(flatten)]
+    stock: StockArguments,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
@@ -87,6 +90,7 @@ pub struct CuttingRequest {
     axis: Unit<Vector3<f64>>,
     tolerance: Option<f64>,
     compensate: bool,
+    stock: StockRequest,
 }
 
 /// What the forces do, whatever the number of joints.
@@ -97,6 +101,8 @@ pub struct Cutting {
     pub surface: &'static str,
     /// Whether the wall is taken to be left of the tool because nothing says where it is.
     pub takes_left: bool,
+    /// What is cut where, from a stock.
+    pub engaged: Option<Engaged>,
     /// Point by point.
     pub deviation: Deviation,
     /// Lines without a force, for want of a direction.
@@ -155,6 +161,7 @@ impl ForceArguments {
         &self,
         setup: &Setup,
         spindle: Option<Unit<Vector3<f64>>>,
+        place: Matrix4<f64>,
         files: &mut Files,
     ) -> Result<Option<CuttingRequest>, Failure> {
         let mut cut = |path: &PathBuf| -> Result<(CutFile, String), Failure> {
@@ -189,6 +196,8 @@ impl ForceArguments {
                     ("--surface", self.surface.is_some()),
                     ("--against", self.against.is_some()),
                     ("--peak", self.peak),
+                    ("--stock", self.stock.is_given()[0]),
+                    ("--cut-of", self.stock.is_given()[1]),
                 ];
                 return match asked.iter().find(|(_, asked)| *asked) {
                     Some((name, _)) => Err(Failure::Usage(format!(
@@ -204,7 +213,11 @@ impl ForceArguments {
         };
         let axis = spindle.ok_or_else(|| setup.lacks_axis("--spindle-axis"))?;
         let (peak, tolerance, compensate) = (self.peak, self.tolerance, self.compensate);
-        Ok(Some(CuttingRequest { source, name, against, peak, surface, axis, tolerance, compensate }))
+        let has_tool = matches!(&source, Source::Cut(file) if matches!(file.forces, Forces::Model(_)));
+        let of_cell = setup.cell().filter(|_| has_tool).and_then(|cell| cell.stock);
+        let of_cell = of_cell.and_then(|[from, to]| Stock::of_corners(&from, &to));
+        let stock = self.stock.read(of_cell, place, files)?;
+        Ok(Some(CuttingRequest { source, name, against, peak, surface, axis, tolerance, compensate, stock }))
     }
 }
 
@@ -221,11 +234,17 @@ impl CuttingRequest {
         path: &ToolPath,
         solved: &SolvedPath<N>,
     ) -> Result<Cutting, Failure> {
+        let mut engaged = None;
         let load = match &self.source {
             Source::Table(table, frame) => table.load(solved, *frame, self.axis, self.surface)?,
             Source::Cut(file) => {
-                complain_of_feed(file, &self.name, path, self.peak);
-                self.load(file, &self.name, path, solved)?
+                if !self.stock.has_stock() {
+                    complain_of_feed(file, &self.name, path, self.peak);
+                }
+                self.stock.complain_of_tools(&self.name, path)?;
+                engaged = self.stock.survey(file, &self.name, solved, self.axis)?;
+                engaged.iter().for_each(|engaged| engaged.complain(path));
+                self.load(file, &self.name, path, solved, engaged.as_ref())?
             }
         };
         has_direction(&load, &self.name, path)?;
@@ -245,19 +264,28 @@ impl CuttingRequest {
         let compared = match (&self.source, &self.against) {
             (Source::Cut(file), Some((other, name))) => {
                 // Its feed may be another than the path's: that is what is compared.
-                let other_load = self.load(other, name, path, solved)?;
+                let other_engaged = self.stock.survey(other, name, solved, self.axis)?;
+                let other_load = self.load(other, name, path, solved, other_engaged.as_ref())?;
                 has_direction(&other_load, name, path)?;
                 let other_deviation = Deviation::of(robot, solved, &other_load).map_err(Failure::new)?;
-                Some([compared(&self.name, file, &deviation), compared(name, other, &other_deviation)])
+                let removal = |file: &CutFile, engaged: Option<&Engaged>| match (&file.forces, engaged) {
+                    (_, Some(engaged)) => engaged.removal_rate(&self.operation(file, path, Some(engaged)), solved),
+                    (Forces::Model(cut), None) => removal_rate(cut),
+                    (Forces::Measured { .. }, None) => None,
+                };
+                let removals = [removal(file, engaged.as_ref()), removal(other, other_engaged.as_ref())];
+                Some([compared(&self.name, removals[0], &deviation), compared(name, removals[1], &other_deviation)])
             }
             _ => None,
         };
         let corrected = if self.compensate { Some(self.correct(robot, path, solved, &load)?) } else { None };
-        complain_of_size(&self.name, forces, &deviation);
+        // A cut's width says nothing where the stock does.
+        complain_of_size(&self.name, forces.filter(|_| !self.stock.is_asked(path)), &deviation);
         Ok(Cutting {
+            engaged,
             name: self.name.clone(),
             surface: if self.surface == Surface::Side { "side" } else { "face" },
-            takes_left: self.surface == Surface::Side && lacks_wall(forces),
+            takes_left: self.surface == Surface::Side && !self.stock.has_stock() && lacks_wall(forces),
             deviation,
             undirected: load.undirected,
             tolerance,
@@ -274,7 +302,13 @@ impl CuttingRequest {
         name: &str,
         path: &ToolPath,
         solved: &SolvedPath<N>,
+        engaged: Option<&Engaged>,
     ) -> Result<Load, Failure> {
+        if self.stock.is_asked(path) {
+            let operation = self.operation(file, path, engaged);
+            operation.check(path)?;
+            return Ok(operation.load(solved, self.axis, self.surface));
+        }
         if !self.peak {
             return Ok(load_along(&file.forces, path, solved, self.axis, self.surface));
         }
@@ -289,6 +323,17 @@ impl CuttingRequest {
             return Err(Failure::new(format_args!("{name}: {lacks}, so nobody can tell the peak of a revolution")));
         };
         Ok(load.with_revolution(revolution.samples.into_iter().map(|(_, force)| force).collect()))
+    }
+
+    /// What cuts along the path, where more than the cut says it.
+    fn operation<'c>(&'c self, file: &'c CutFile, path: &ToolPath, engaged: Option<&'c Engaged>) -> Operation<'c> {
+        Operation {
+            forces: &file.forces,
+            tools: &self.stock.tools,
+            at_feeds: path.is_program || engaged.is_some(),
+            survey: engaged.map(Engaged::survey),
+            angles: self.peak.then_some(ANGLES),
+        }
     }
 
     fn correct<const N: usize>(
@@ -391,12 +436,8 @@ fn complain_of_speed(cut: &Cut, name: &str, path: &ToolPath) {
     ));
 }
 
-fn compared(name: &str, file: &CutFile, deviation: &Deviation) -> Compared {
+fn compared(name: &str, removal: Option<f64>, deviation: &Deviation) -> Compared {
     let force = deviation.points.iter().map(|point| point.wrench.fixed_rows::<3>(0).norm()).fold(0.0, f64::max);
-    let removal = match &file.forces {
-        Forces::Model(cut) => removal_rate(cut),
-        Forces::Measured { .. } => None,
-    };
     let [distance, error] = [deviation.distances(), deviation.errors()].map(|of| of.map(|of| of.worst));
     Compared { name: name.to_owned(), removal, force, distance, error }
 }

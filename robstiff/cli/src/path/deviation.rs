@@ -6,6 +6,7 @@ use robstiff_machining::path::lines;
 use serde_json::{Value, json};
 
 use super::cutting::{Corrected, Cutting, WRONG};
+use super::stock::Engaged;
 use crate::json::{number, numbers};
 use crate::text::{Table, cell, count, decimals, micrometres};
 
@@ -20,7 +21,8 @@ pub fn page(cutting: &Cutting) -> String {
         all if in_cut == all => format!("all {}", count(all, "point")),
         all => format!("the {in_cut} of {} with a force", count(all, "point")),
     };
-    let mut page = format!("\nDeviation under {} [um], over {over}\n", cutting.name);
+    let mut page = cutting.engaged.as_ref().map(Engaged::page).unwrap_or_default();
+    page += &format!("\nDeviation under {} [um], over {over}\n", cutting.name);
     let mut rows = Table::new(1, ["", "mean", "rms", "worst"]);
     let mut row = |name: &str, of: Option<Summary>| {
         // A tool that plunges has no wall, and its feed no normal.
@@ -30,7 +32,7 @@ pub fn page(cutting: &Cutting) -> String {
     row("distance from the path", cutting.deviation.distances());
     for (axis, name) in ["along the feed", "normal to it", "along the tool axis"].into_iter().enumerate() {
         let along = |point: &DeviationPoint| point.components.map(|found| found[axis]);
-        row(name, Summary::of(cutting.deviation.in_cut().filter_map(along)));
+        row(name, cutting.deviation.summary(along));
     }
     let judged = if points.iter().any(|point| point.peak.is_some()) { ", peak of a revolution" } else { "" };
     row(&format!("error of the {}{judged}", surface(cutting)), cutting.deviation.errors());
@@ -162,7 +164,8 @@ impl Columns {
 
 /// The columns of `--out`, after those of the path.
 pub fn columns(cutting: &Cutting, has: Columns) -> String {
-    let mut columns = "Fx [N],Fy [N],Fz [N],".to_owned();
+    let mut columns = if cutting.engaged.is_some() { "ae [mm],ap [mm],".to_owned() } else { String::new() };
+    columns += "Fx [N],Fy [N],Fz [N],";
     if has.moments {
         columns += "Mx [Nm],My [Nm],Mz [Nm],";
     }
@@ -189,7 +192,8 @@ fn acting(cutting: &Cutting, index: usize) -> [f64; 6] {
 pub fn cells(cutting: &Cutting, has: Columns, index: usize) -> String {
     let point = &cutting.deviation.points[index];
     let wrench = acting(cutting, index).into_iter().take(if has.moments { 6 } else { 3 });
-    let mut cells: Vec<String> = wrench.map(|component| cell(component, 4)).collect();
+    let mut cells: Vec<String> = cutting.engaged.iter().map(|engaged| engaged.cells(index)).collect();
+    cells.extend(wrench.map(|component| cell(component, 4)));
     let along = |axis: usize| point.components.map(|components| components[axis]);
     let lengths = [Some(point.distance()), along(0), along(1), along(2), point.error];
     let micro = |length: Option<f64>| length.map_or_else(String::new, |length| cell(length * 1e6, 4));
@@ -217,6 +221,7 @@ pub fn document(cutting: &Cutting) -> Value {
     json!({
         "forces": cutting.name,
         "surface": cutting.surface,
+        "engagement": cutting.engaged.as_ref().map(Engaged::document),
         "points_with_force": cutting.deviation.in_cut().count(),
         "distance": summary(cutting.deviation.distances()),
         "error": summary(cutting.deviation.errors()),

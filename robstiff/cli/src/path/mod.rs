@@ -5,6 +5,7 @@ pub mod cutting;
 pub mod deviation;
 mod doubts;
 mod robot_program;
+mod stock;
 
 use std::fmt::Write as _;
 use std::path::PathBuf;
@@ -98,7 +99,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let program = arguments.robot_program.read(setup.robot_file(), &setup.robot, &file, arguments.out.as_ref())?;
     let out = arguments.out.as_ref().filter(|_| program.is_none());
     let mut files = Files::default();
-    let request = arguments.cutting.read(&setup, opened.spindle, &mut files)?;
+    let request = arguments.cutting.read(&setup, opened.spindle, opened.place, &mut files)?;
     let robot = &setup.robot;
     if request.is_some() {
         input::refuse_if_rigid(robot, "`robstiff path` with a cut or forces")?;

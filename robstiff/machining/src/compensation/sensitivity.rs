@@ -9,7 +9,7 @@ use robstiff::Robot;
 /// is without correction on the same arm.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LeftIfWrong {
-    /// Of the root of the mean square over the points.
+    /// Of the root of the mean square over the length of the path.
     pub rms: f64,
     /// Of the largest.
     pub worst: f64,
@@ -40,7 +40,9 @@ pub fn left<const N: usize>(
     compensated: &Compensated<N>,
 ) -> Result<LeftIfWrong, PulledIn> {
     assert_eq!(compensated.points.len(), path.points.len(), "a correction for every point of the path");
-    let distances = |stands: Vec<Stand>| Summary::of(stands.iter().map(|stand| stand.off.fixed_rows::<3>(0).norm()));
+    let lengths = path.lengths();
+    let distance = |stand: &Stand| stand.off.fixed_rows::<3>(0).norm();
+    let distances = |stands: Vec<Stand>| Summary::of(stands.iter().map(distance).zip(lengths.iter().copied()));
     let uncorrected = displaced(robot, Some(factors), path.points.iter().map(|point| point.q), path, load)?;
     let corrected = displaced(robot, Some(factors), compensated.points.iter().map(|point| point.q), path, load)?;
     // An arm that is not pushed anywhere has nothing to correct.

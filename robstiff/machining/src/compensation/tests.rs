@@ -4,7 +4,7 @@ use robstiff_robots::Description;
 
 use super::*;
 use crate::deviation::tests::{cut, described, solved};
-use crate::deviation::{ForceTable, Surface, load_of_cut, width};
+use crate::deviation::{ForceTable, Revolutions, Surface, load_of_cut, width};
 use crate::milling::{Cut, CutFrame, Direction, Engagement, ForceFrame, Forces};
 use crate::path::ToolPath;
 use robstiff::{Generic, Robot};
@@ -148,11 +148,22 @@ fn one_joint_is_corrected_as_near_as_it_gets() {
 
 fn one_point<const N: usize>(robot: &impl Robot<N>, q: SVector<f64, N>, wrench: Vector6<f64>) -> (SolvedPath<N>, Load) {
     let pose = robot.transform(&q);
-    let point =
-        PathPoint { line: 2, q, pose, tangent: None, s: 0.0, feed: None, rapid: false, spindle: None, tool: None };
+    let point = PathPoint {
+        line: 2,
+        q,
+        pose,
+        tangent: None,
+        s: 0.0,
+        feed: None,
+        rapid: false,
+        spindle: None,
+        tool: None,
+        width: None,
+        depth: None,
+    };
     let response = nalgebra::Matrix3::new(2e4, 1e4, 0.0, -1e4, 3e4, 0.0, 5e3, 0.0, -2e4);
     let contact = Contact { wrench, response, frame: None, into: None, turn: nalgebra::Matrix3::identity() };
-    let load = Load { contacts: vec![contact], revolution: Vec::new(), undirected: Vec::new() };
+    let load = Load { contacts: vec![contact], revolution: Revolutions::None, undirected: Vec::new() };
     (SolvedPath { points: vec![point], jumps: Vec::new() }, load)
 }
 

@@ -1,8 +1,12 @@
 //! What acts on the tool along a path.
 
+use std::borrow::Cow;
+use std::sync::Arc;
+
 use nalgebra::{Matrix3, Vector3, Vector6};
 
-use crate::milling::CutFrame;
+use crate::engagement::Bite;
+use crate::milling::{Cut, CutFrame};
 
 /// Which surface is machined.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -26,7 +30,7 @@ pub struct Contact {
     pub frame: Option<CutFrame>,
     /// The unit vector into the part, across the machined surface, in the base frame.
     pub into: Option<Vector3<f64>>,
-    /// What turns the forces of [`Load::revolution`] into the base frame.
+    /// What turns the forces of a [revolution](Load::revolution) into the base frame.
     pub turn: Matrix3<f64>,
 }
 
@@ -35,9 +39,8 @@ pub struct Contact {
 pub struct Load {
     /// Point by point, as many as the path has.
     pub contacts: Vec<Contact>,
-    /// The forces of a revolution (N), at any of its angles; empty where only the mean
-    /// counts.
-    pub revolution: Vec<Vector3<f64>>,
+    /// What acts over a revolution.
+    pub revolution: Revolutions,
     /// The lines at which there is no force because the tool plunges or stays in
     /// place, so that the cut has no direction. Forces along the axes of the base's
     /// or the TCP's frame need none.
@@ -49,7 +52,35 @@ impl Load {
     /// the cut's force has).
     #[must_use]
     pub fn with_revolution(mut self, forces: Vec<Vector3<f64>>) -> Self {
-        self.revolution = forces;
+        self.revolution = Revolutions::Same(forces);
         self
     }
+
+    /// The forces of a revolution at a point (N, along the axes that the cut's force has); none where
+    /// only the mean counts.
+    pub fn revolution(&self, point: usize) -> Cow<'_, [Vector3<f64>]> {
+        match &self.revolution {
+            Revolutions::None => Cow::Borrowed(&[]),
+            Revolutions::Same(forces) => Cow::Borrowed(forces),
+            Revolutions::Each { met, angles } => met[point]
+                .as_ref()
+                .map_or(Cow::Borrowed(&[][..]), |(cut, bite)| Cow::Owned(bite.extremes(cut, *angles))),
+        }
+    }
+}
+
+/// The forces of a revolution along a path.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Revolutions {
+    /// Only the mean counts.
+    None,
+    /// These (N), at any of its angles, at each point.
+    Same(Vec<Vector3<f64>>),
+    /// Those of what each point meets, and with which cut, at so many angles.
+    Each {
+        /// Point by point; none without a force.
+        met: Vec<Option<(Cut, Arc<Bite>)>>,
+        /// How many.
+        angles: usize,
+    },
 }

@@ -28,6 +28,8 @@
 
 mod blame;
 mod contact;
+#[cfg(test)]
+mod engaged_tests;
 mod load;
 mod parts;
 #[cfg(test)]
@@ -45,8 +47,8 @@ use crate::path::SolvedPath;
 use robstiff::Robot;
 
 pub use blame::blame;
-pub use contact::{Contact, Load, Surface};
-pub use load::{load_at_feeds, load_of_cut};
+pub use contact::{Contact, Load, Revolutions, Surface};
+pub use load::{Operation, load_at_feeds, load_of_cut};
 pub use parts::parts;
 pub use removal::{removal_rate, width};
 pub use settle::PulledIn;
@@ -68,6 +70,8 @@ pub struct DeviationPoint {
     pub line: usize,
     /// The arc length (m).
     pub s: f64,
+    /// The length of the path that it stands for (m), by which it counts in averages.
+    pub length: f64,
     /// The wrench that acts, in the base frame (N, Nm).
     pub wrench: Vector6<f64>,
     /// How far the TCP is from the path, in the base frame (m, rad).
@@ -113,17 +117,19 @@ impl Deviation {
     /// If the load has another number of points than the path.
     pub fn of<const N: usize>(robot: &impl Robot<N>, path: &SolvedPath<N>, load: &Load) -> Result<Self, PulledIn> {
         let stands = displaced(robot, None, path.points.iter().map(|point| point.q), path, load)?;
-        let points = path.points.iter().zip(&load.contacts).zip(stands).map(|((point, contact), stand)| {
+        let each = path.points.iter().zip(path.lengths()).zip(&load.contacts).zip(stands).enumerate();
+        let points = each.map(|(i, (((point, length), contact), stand))| {
             let shift = stand.off.fixed_rows::<3>(0).into_owned();
             let error = contact.into.map(|into| into.dot(&shift));
             DeviationPoint {
                 line: point.line,
                 s: point.s,
+                length,
                 wrench: stand.wrench,
                 displacement: stand.off,
                 components: contact.frame.map(|frame| frame.components(&shift)),
                 error,
-                peak: error.and_then(|mean| peak(robot, &point.q, contact, mean, &load.revolution)),
+                peak: error.and_then(|mean| peak(robot, &point.q, contact, mean, &load.revolution(i))),
             }
         });
         Ok(Self { points: points.collect() })

@@ -18,7 +18,7 @@ pub struct Stretch {
     pub worst: Option<f64>,
 }
 
-/// Errors along a path in three numbers (m).
+/// Errors along a path in three numbers (m), mean and rms by length.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Summary {
     /// The mean.
@@ -30,16 +30,19 @@ pub struct Summary {
 }
 
 impl Summary {
-    /// Of any numbers; `None` of none.
-    pub fn of(values: impl IntoIterator<Item = f64>) -> Option<Self> {
-        let (mut count, mut sum, mut squares, mut worst) = (0_usize, 0.0, 0.0, 0.0_f64);
-        for value in values {
+    /// Of numbers, each with the length that it stands for; `None` of none. Where no number has a length, all count
+    /// alike.
+    pub fn of(values: impl IntoIterator<Item = (f64, f64)>) -> Option<Self> {
+        let mut sums = [[0.0; 3]; 2];
+        let (mut count, mut worst) = (0_usize, 0.0_f64);
+        for (value, length) in values {
             count += 1;
-            sum += value;
-            squares += value * value;
+            for (sum, weight) in sums.iter_mut().zip([length, 1.0]) {
+                [weight, weight * value, weight * value * value].iter().zip(sum).for_each(|(part, sum)| *sum += part);
+            }
             worst = larger(worst, value);
         }
-        let of = count as f64;
+        let [of, sum, squares] = if sums[0][0] > 0.0 { sums[0] } else { sums[1] };
         (count > 0).then(|| Self { mean: sum / of, rms: (squares / of).sqrt(), worst })
     }
 }
@@ -92,11 +95,17 @@ impl Deviation {
     /// The error of the surface over the points in the cut that have one; `None` where
     /// none has, as of a tool that plunges.
     pub fn errors(&self) -> Option<Summary> {
-        Summary::of(self.judged())
+        self.summary(DeviationPoint::judged)
     }
 
     /// The distance from the path over the points in the cut; `None` where nothing pushes.
     pub fn distances(&self) -> Option<Summary> {
-        Summary::of(self.in_cut().map(DeviationPoint::distance))
+        self.summary(|point| Some(point.distance()))
+    }
+
+    /// What the points in the cut have of something, each by the length of the path that it stands for; `None` where none
+    /// has it.
+    pub fn summary(&self, of: impl Fn(&DeviationPoint) -> Option<f64>) -> Option<Summary> {
+        Summary::of(self.in_cut().filter_map(|point| Some((of(point)?, point.length))))
     }
 }

@@ -9,7 +9,7 @@ use robstiff_robots::words::count;
 use robstiff_robots::{Diagnostic, Diagnostics, Line, ReadError};
 
 use super::load::{contact, rotation};
-use super::{Load, Surface};
+use super::{Load, Revolutions, Surface};
 use crate::milling::ForceFrame;
 use crate::path::SolvedPath;
 use crate::path::read::LENGTHS;
@@ -112,7 +112,7 @@ impl ForceTable {
             contact
         });
         let contacts = contacts.collect();
-        Ok(Load { contacts, revolution: Vec::new(), undirected })
+        Ok(Load { contacts, revolution: Revolutions::None, undirected })
     }
 
     /// Holds the rows against those of a path.

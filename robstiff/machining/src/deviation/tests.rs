@@ -189,6 +189,7 @@ fn stretches_hold_and_break_a_tolerance() {
     let points = errors.iter().enumerate().map(|(i, &error)| DeviationPoint {
         line: i + 2,
         s: 0.01 * i as f64,
+        length: 0.01,
         wrench: Vector6::x(),
         displacement: Vector6::zeros(),
         components: None,
@@ -209,6 +210,7 @@ fn moves_without_force_do_not_dilute_the_errors() {
     let point = |force: f64, distance: f64| DeviationPoint {
         line: 2,
         s: 0.0,
+        length: 0.01,
         wrench: Vector6::x() * force,
         displacement: Vector6::x() * distance,
         components: None,
@@ -225,6 +227,30 @@ fn moves_without_force_do_not_dilute_the_errors() {
     assert_eq!(whole.in_cut().count(), 2);
     let idle = Deviation { points: [point(0.0, 1e-4); 2].into() };
     assert_eq!((idle.distances(), idle.errors()), (None, None));
+}
+
+/// More points on a leg do not make it count for more; a single point has no length.
+#[test]
+fn averages_are_by_length() {
+    let (robot, ..) = solved::<6>("kuka-kr270-r2700", Vector3::z_axis());
+    let leg = |count: usize| {
+        // A leg of 400 mm to the side, pushed hard, then one of 400 mm away, pushed little.
+        let mut text = String::from("x [mm],y [mm],z [mm],ux,uy,uz\n");
+        let side = (0..=count).map(|k| (1400.0, 400.0 * k as f64 / count as f64));
+        let away = (1..=10).map(|k| (1400.0 + 40.0 * f64::from(k), 400.0));
+        side.chain(away).for_each(|(x, y)| text += &format!("{x},{y},600,0,0,-1\n"));
+        let path = ToolPath::parse("leg.csv", &text, &described("kuka-kr270-r2700"), Vector3::z_axis()).unwrap();
+        let path = path.solve(&robot, None).unwrap();
+        let mut forces = String::from("Fx,Fy,Fz\n");
+        (0..path.points.len()).for_each(|i| forces += if i <= count { "0,900,0\n" } else { "0,100,0\n" });
+        let load = table(&forces).unwrap().load(&path, ForceFrame::Base, Vector3::z_axis(), Surface::Side).unwrap();
+        Deviation::of(&robot, &path, &load).unwrap().distances().unwrap()
+    };
+    let (few, many) = (leg(10), leg(400));
+    // The mean of a few points is off by the ends of the legs.
+    assert!((few.mean / many.mean - 1.0).abs() < 0.06 && (few.rms / many.rms - 1.0).abs() < 0.06, "{few:?} {many:?}");
+    assert_eq!(Summary::of([(2.0, 0.0), (4.0, 0.0)]).unwrap().mean, 3.0);
+    assert_eq!(Summary::of([(2.0, 0.0), (4.0, 1.0)]).unwrap().mean, 4.0);
 }
 
 #[test]

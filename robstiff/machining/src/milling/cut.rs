@@ -12,6 +12,9 @@ pub struct EndMill {
     /// Helix angle (rad); positive for a right-handed helix, which pulls the tool out of
     /// its holder, negative for a left-handed one, which pushes it in.
     pub helix: f64,
+    /// The radius of its corner (m): 0 of a flat end mill, half the diameter of a ball nose. It shapes what is met in a
+    /// [stock](crate::engagement); a cut of a given width and depth is taken by the circumference alone.
+    pub corner: f64,
     /// How far each tooth stands out beyond the mean radius (m), in the order
     /// in which they cut, as an indicator shows it; empty without runout.
     pub runout: Vec<f64>,

@@ -70,7 +70,7 @@ impl Engagement {
     }
 
     /// Whether it meets the walls at +normal and at -normal.
-    fn meets(&self) -> [bool; 2] {
+    pub(crate) fn meets(&self) -> [bool; 2] {
         [self.entry <= AT_WALL, self.exit >= PI - AT_WALL]
     }
 }

@@ -146,6 +146,7 @@ fn bare(document: &Document) -> Vec<String> {
     let tool = map.get("tool").and_then(map_of);
     let fields = [
         (tool.as_ref(), "diameter", "m", "mm"),
+        (tool.as_ref(), "corner", "m", "mm"),
         (Some(&map), "width", "m", "mm"),
         (Some(&map), "depth", "m", "mm"),
         (Some(&map), "feed", "m a tooth", "mm/tooth"),
@@ -255,7 +256,7 @@ pub(super) fn depth(map: &Map<'_>, diameter: Option<f64>) -> Option<f64> {
 }
 
 pub(super) fn mill(node: &Node<'_>) -> Option<EndMill> {
-    let map = node.map(&["diameter", "teeth", "helix", "runout"])?;
+    let map = node.map(&["diameter", "teeth", "helix", "corner", "runout"])?;
     let diameter = map.require("diameter", "diameter: 16 mm").and_then(|node| node.positive(Dimension::Length));
     let teeth = map.require("teeth", "teeth: 3").and_then(|node| {
         let teeth = node.integer(3)?;
@@ -273,6 +274,19 @@ pub(super) fn mill(node: &Node<'_>) -> Option<EndMill> {
         }
         Some(helix)
     });
+    let corner = map.get("corner").map_or(Some(0.0), |node| {
+        let corner = node.quantity(Dimension::Length)?;
+        // Half of a diameter that was rounded is a ball nose.
+        let Some(most) = diameter.map(|diameter| 0.5 * diameter) else { return Some(corner) };
+        if !(0.0..=most * (1.0 + 1e-9)).contains(&corner) {
+            node.error(
+                "the radius of the corner is not between 0 and half the diameter",
+                format!("0 of a flat end mill, `{} mm` of a ball nose", 1e3 * most),
+            );
+            return None;
+        }
+        Some(corner.min(most))
+    });
     let runout = map.get("runout").map_or(Some(Vec::new()), |node| {
         let items = node.sequence()?;
         let out: Vec<Option<f64>> = items.iter().map(|item| item.quantity(Dimension::Length)).collect();
@@ -283,7 +297,7 @@ pub(super) fn mill(node: &Node<'_>) -> Option<EndMill> {
         }
         out.into_iter().collect()
     });
-    Some(EndMill { diameter: diameter?, teeth: teeth?, helix: helix?, runout: runout? })
+    Some(EndMill { diameter: diameter?, teeth: teeth?, helix: helix?, corner: corner?, runout: runout? })
 }
 
 /// What the material resists with: as the model has it, or by a law that it follows nearly.

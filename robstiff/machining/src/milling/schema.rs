@@ -36,15 +36,24 @@ pub fn schema() -> Value {
 }
 
 fn tool() -> Value {
-    let schema = object(&["diameter", "teeth", "helix", "runout"], &["diameter", "teeth"], |field| match field {
-        "diameter" => quantity(Dimension::Length, Sign::Positive, "The diameter"),
-        "teeth" => whole(1, Some(100), "How many teeth it has"),
-        "helix" => default(quantity(Dimension::Angle, Sign::Any, "The helix angle"), 0),
-        _ => described(
-            json!({ "type": "array", "items": quantity(Dimension::Length, Sign::Any, "A tooth") }),
-            "How far each tooth stands out, in the order in which they cut",
-        ),
-    });
+    let schema =
+        object(&["diameter", "teeth", "helix", "corner", "runout"], &["diameter", "teeth"], |field| match field {
+            "diameter" => quantity(Dimension::Length, Sign::Positive, "The diameter"),
+            "teeth" => whole(1, Some(100), "How many teeth it has"),
+            "helix" => default(quantity(Dimension::Angle, Sign::Any, "The helix angle"), 0),
+            "corner" => default(
+                quantity(
+                    Dimension::Length,
+                    Sign::NotNegative,
+                    "The radius of the corner, half the diameter of a ball nose",
+                ),
+                0,
+            ),
+            _ => described(
+                json!({ "type": "array", "items": quantity(Dimension::Length, Sign::Any, "A tooth") }),
+                "How far each tooth stands out, in the order in which they cut",
+            ),
+        });
     described(schema, "The end mill")
 }
 

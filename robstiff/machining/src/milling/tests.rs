@@ -10,7 +10,8 @@ mod fit;
 const MATERIAL: Coefficients = Coefficients { ktc: 631e6, kte: 13e3, krc: 99e6, kre: 10e3, kac: 273e6, kae: 2.8e3 };
 
 fn cut(engagement: Engagement, helix_deg: f64, runout: &[f64]) -> Cut {
-    let mill = EndMill { diameter: 0.016, teeth: 3, helix: helix_deg.to_radians(), runout: runout.to_vec() };
+    let mill =
+        EndMill { diameter: 0.016, teeth: 3, helix: helix_deg.to_radians(), corner: 0.0, runout: runout.to_vec() };
     let speed = Some(9000.0 * PI / 30.0);
     Cut { mill, coefficients: MATERIAL, engagement, depth: 0.004, feed_per_tooth: 1e-4, speed }
 }
@@ -152,7 +153,7 @@ fn a_slot_has_its_own_short_form() {
 /// Fz along the axis, as the code exchanges them.
 #[test]
 fn a_measured_slot_is_as_published() {
-    let mill = EndMill { diameter: 0.025, teeth: 2, helix: PI / 4.0, runout: Vec::new() };
+    let mill = EndMill { diameter: 0.025, teeth: 2, helix: PI / 4.0, corner: 0.0, runout: Vec::new() };
     let coefficients = Coefficients {
         ktc: 958.8599e6,
         kte: 15.7580e3,

@@ -310,6 +310,8 @@ fn square() -> (Generic<5>, Timeline<5>) {
             rapid: false,
             spindle: None,
             tool: None,
+            width: None,
+            depth: None,
         }
     };
     let points = corners.into_iter().enumerate().map(point).collect();

@@ -92,6 +92,8 @@ impl ToolPath {
             rapid: point.rapid,
             spindle: point.spindle,
             tool: point.tool,
+            width: point.width,
+            depth: point.depth,
         });
         Ok(SolvedPath { points: points.collect(), jumps: followed.jumps })
     }

@@ -55,6 +55,10 @@ pub struct Waypoint {
     pub spindle: Option<f64>,
     /// The number of the tool, where the file says it.
     pub tool: Option<u32>,
+    /// The radial width of the cut (m) on the way to the point, where the file says it; 0 in the air.
+    pub width: Option<f64>,
+    /// The axial depth of the cut (m), the same way.
+    pub depth: Option<f64>,
 }
 
 /// Where the robot is to be at a point.
@@ -100,6 +104,25 @@ pub struct PathPoint<const N: usize> {
     pub spindle: Option<f64>,
     /// The number of the tool, where the file says it.
     pub tool: Option<u32>,
+    /// The radial width of the cut (m) on the way to the point, where the file says it; 0 in the air.
+    pub width: Option<f64>,
+    /// The axial depth of the cut (m), the same way.
+    pub depth: Option<f64>,
+}
+
+impl<const N: usize> SolvedPath<N> {
+    /// The length of the path that each point stands for (m): half of the way from the point before and half of
+    /// that to the next, as far as these are no rapids. Averages over a path are weighed by it, or
+    /// more points on a leg would make that leg count for more.
+    pub fn lengths(&self) -> Vec<f64> {
+        let mut lengths = vec![0.0; self.points.len()];
+        for (i, pair) in self.points.windows(2).enumerate().filter(|(_, pair)| !pair[1].rapid) {
+            let half = 0.5 * (pair[1].s - pair[0].s);
+            lengths[i] += half;
+            lengths[i + 1] += half;
+        }
+        lengths
+    }
 }
 
 impl<const N: usize> PathPoint<N> {

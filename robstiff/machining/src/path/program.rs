@@ -81,5 +81,7 @@ fn waypoint(each: &Move, tool: Unit<Vector3<f64>>) -> Waypoint {
         rapid: each.rapid,
         spindle: Some(each.spindle),
         tool: each.tool,
+        width: None,
+        depth: None,
     }
 }

@@ -23,6 +23,9 @@ const TWO_TURNS: f64 = 4.0 * core::f64::consts::PI;
 /// Feeds beyond this (m/s) without a unit are probably in mm/min.
 const FASTEST: f64 = 10.0;
 
+/// Widths and depths of a cut beyond this (m) without a unit are probably in mm.
+const WIDEST: f64 = 0.5;
+
 /// Columns that a path may have beside it, as `robstiff path` writes them.
 const BESIDE: [&str; 16] = [
     "Fx",
@@ -86,6 +89,8 @@ impl ToolPath {
         let feed = table.numbers("feed", Dimension::Speed);
         let s = table.numbers("s", Dimension::Length);
         let rapid = table.numbers("rapid", Dimension::Number);
+        let number = table.numbers("tool", Dimension::Number);
+        let cut = ["ae", "ap"].map(|name| table.numbers(name, Dimension::Length));
         let columns = columns(&table, robot);
         for name in BESIDE {
             table.position(name);
@@ -94,6 +99,7 @@ impl ToolPath {
             check_units(&table, &columns, robot);
             s.iter().for_each(|&column| LENGTHS.check(&table, column));
             feed.iter().for_each(|&column| FEEDS.check(&table, column));
+            cut.iter().flatten().for_each(|&column| CUTS.check(&table, column));
             let mut last_s = f64::NEG_INFINITY;
             let rows = table.records.iter().map(|record| {
                 let goal = goal(&table, record, &columns, tool);
@@ -102,12 +108,17 @@ impl ToolPath {
                 let feed = feed.map(|column| positive(&table, record, column));
                 let s = s.map(|column| not_back(&table, record, column, &mut last_s));
                 let rapid = rapid.map(|column| table.number(record, column));
-                if feed == Some(None) || s == Some(None) || rapid == Some(None) {
+                let filled = |column: Option<Numbers>| column.filter(|column| !table.is_empty(record, *column));
+                let number = filled(number).map(|column| tool_number(&table, record, column));
+                let [width, depth] = cut.map(|column| filled(column).map(|column| section(&table, record, column)));
+                let is_wrong = [feed, s, rapid, width, depth].contains(&Some(None)) || number == Some(None);
+                if is_wrong {
                     return None;
                 }
                 let rapid = rapid.flatten().is_some_and(|rapid| rapid != 0.0);
-                let (feed, s) = (feed.flatten(), s.flatten());
-                Some(Waypoint { line: record.line, goal: goal?, feed, s, rapid, spindle: None, tool: None })
+                let (feed, s, tool) = (feed.flatten(), s.flatten(), number.flatten());
+                let (line, spindle, width, depth) = (record.line, None, width.flatten(), depth.flatten());
+                Some(Waypoint { line, goal: goal?, feed, s, rapid, spindle, tool, width, depth })
             });
             // Every row is checked before any gives the file up.
             rows.collect::<Vec<_>>().into_iter().collect::<Option<Vec<_>>>()
@@ -235,6 +246,29 @@ fn positive(table: &Table<'_>, record: &Record, column: Numbers) -> Option<f64> 
     None
 }
 
+/// The width or the depth of a cut.
+fn section(table: &Table<'_>, record: &Record, column: Numbers) -> Option<f64> {
+    let section = table.number(record, column)?;
+    if section >= 0.0 {
+        return Some(section);
+    }
+    let message = format!("`{}` is negative", table.name_of(column));
+    let help =
+        "`ae` is the radial width of the cut and `ap` its axial depth; 0 in the air, empty for that of the cut's file";
+    table.report_number(record, column, &message, help);
+    None
+}
+
+/// The number of a tool.
+fn tool_number(table: &Table<'_>, record: &Record, column: Numbers) -> Option<u32> {
+    let written = table.number(record, column)?;
+    if written >= 0.0 && written.fract() == 0.0 && written <= f64::from(u32::MAX) {
+        return Some(written as u32);
+    }
+    table.report_number(record, column, "a tool has a whole number", "that of the tool's table, e.g. `2`");
+    None
+}
+
 fn not_back(table: &Table<'_>, record: &Record, column: Numbers, last: &mut f64) -> Option<f64> {
     let s = table.number(record, column)?;
     if s < *last {
@@ -287,6 +321,9 @@ pub const LENGTHS: Bare = Bare { limit: FAR, what: "lengths in millimetres", uni
 
 /// Angles in degrees, not in rad.
 const ANGLES: Bare = Bare { limit: TWO_TURNS, what: "angles in degrees", unit: "deg" };
+
+/// Widths and depths of cuts in mm, not in m.
+const CUTS: Bare = Bare { limit: WIDEST, what: "widths or depths in millimetres", unit: "mm" };
 
 /// Feeds in mm/min, not in m/s.
 const FEEDS: Bare = Bare { limit: FASTEST, what: "feeds in millimetres a minute", unit: "mm/min" };

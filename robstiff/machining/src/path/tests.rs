@@ -210,9 +210,9 @@ fn mistakes_are_shown_where_they_are() {
     assert!(path([0, 20, 40]).is_empty() && path([0, 30, 60]).is_empty());
     let short = path([0, 2, 4]).concat();
     assert!(short.contains("grows by 2.000000 mm on line 3, and the points are 20.000000 mm apart"), "{short}");
-    let warned = parse("x,y,z,ux,uy,uz,tool\n1500,0,1,0,0,1,3\n", &description).unwrap().warnings;
+    let warned = parse("x,y,z,ux,uy,uz,colour\n1500,0,1,0,0,1,3\n", &description).unwrap().warnings;
     assert_eq!(warned.len(), 2, "{warned:?}");
-    assert!(warned[0].contains("write `x [mm]`") && warned[1].contains("`tool` is not used"), "{warned:?}");
+    assert!(warned[0].contains("write `x [mm]`") && warned[1].contains("`colour` is not used"), "{warned:?}");
 }
 
 /// With a free turn about the tool's axis one branch has more postures than are followed.

@@ -66,7 +66,7 @@ impl Arm {
 fn drawn_cut(draws: &mut Draws) -> Cut {
     let teeth = draws.between(2.0, 7.0) as usize;
     let helix = draws.between(-0.7, 0.7);
-    let mill = EndMill { diameter: 0.02, teeth, helix, runout: Vec::new() };
+    let mill = EndMill { diameter: 0.02, teeth, helix, corner: 0.0, runout: Vec::new() };
     let ktc = draws.between(200e6, 1000e6);
     let [krc, kac] = [draws.between(0.1, 0.6) * ktc, draws.between(0.0, 0.5) * ktc];
     let width = draws.between(0.004, 0.02);

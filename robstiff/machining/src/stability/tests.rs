@@ -20,7 +20,7 @@ fn in_plane(angle: f64) -> Unit<Vector3<f64>> {
 }
 
 pub(super) fn cut(engagement: Engagement) -> Cut {
-    let mill = EndMill { diameter: 0.02, teeth: 4, helix: 0.5, runout: Vec::new() };
+    let mill = EndMill { diameter: 0.02, teeth: 4, helix: 0.5, corner: 0.0, runout: Vec::new() };
     let coefficients = Coefficients { ktc: 767e6, kte: 27.7e3, krc: 169e6, kre: 26.6e3, kac: 222e6, kae: 700.0 };
     Cut { mill, coefficients, engagement, depth: 0.002, feed_per_tooth: 1e-4, speed: None }
 }

@@ -33,6 +33,8 @@ fn a_cut_is_read() {
         }
         Forces::Measured { .. } => panic!("nothing was measured"),
     };
+    let ball = read(&POCKET.replace("helix: 30 deg", "helix: 30 deg, corner: 8 mm")).unwrap();
+    assert!(matches!(&ball.forces, Forces::Model(found) if (found.mill.corner - 0.008).abs() < 1e-12));
     let file = read(POCKET).unwrap();
     assert!(file.source.contains("10.1186"));
     close(&file);
@@ -54,6 +56,8 @@ fn mistakes_are_shown_where_they_are() {
         ("width: 4 mm", "width: 4", "cut.yaml:4:8", "`width` has no unit and is taken in m: is it in mm?"),
         ("teeth: 3", "teeth: 2.5", "cut.yaml:1:32", "e.g. `3`"),
         ("width: 4 mm\n", "", "cut.yaml:1:1", "`width` is missing"),
+        ("helix: 30 deg", "corner: 9 mm", "cut.yaml:1:43", "`8 mm` of a ball nose"),
+        ("helix: 30 deg", "corner: -1 um", "cut.yaml:1:43", "not between 0 and half the diameter"),
         ("teeth: 3", "teeth: 0", "cut.yaml:1:32", "1 to 100 teeth"),
         ("feed: 0.1 mm/tooth", "feed: 0.1 m/tooth", "cut.yaml:6:7", "not below the tool's radius"),
         ("depth: 4 mm", "depth: -4 mm", "cut.yaml:5:8", "above zero"),

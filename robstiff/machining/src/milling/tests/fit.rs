@@ -12,7 +12,7 @@ use crate::milling::*;
 
 /// A cut of the records below.
 fn cut(feed: f64, engagement: Engagement) -> Cut {
-    let mill = EndMill { diameter: 0.025, teeth: 2, helix: 0.5, runout: Vec::new() };
+    let mill = EndMill { diameter: 0.025, teeth: 2, helix: 0.5, corner: 0.0, runout: Vec::new() };
     let speed = Some(6000.0 * PI / 30.0);
     Cut { mill, coefficients: MATERIAL, engagement, depth: 0.003, feed_per_tooth: feed, speed }
 }
