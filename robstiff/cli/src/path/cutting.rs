@@ -8,6 +8,7 @@ use robstiff_machining::compensation::{CompensatedPoint, Keep, Sensitivity, comp
 use robstiff_machining::deviation::{
     Deviation, ForceTable, Load, Operation, Stretch, Surface, blame, load_at_feeds, load_of_cut, removal_rate,
 };
+use robstiff_machining::engagement::Stock;
 use robstiff_machining::milling::{Cut, CutFile, ForceFrame, Forces};
 use robstiff_machining::path::{SolvedPath, ToolPath};
 use robstiff_robots::quantity::Dimension;
