@@ -83,13 +83,14 @@ fn correcting_before_or_after_writing_is_the_same() {
         expected.sort_unstable();
         assert_eq!(names(Path::new(&plain)), expected);
         let job = json(&inside(Path::new(&plain), "job.json"));
-        assert_eq!((&job["program"]["files"][0], &job["program"]["targets"]), (&name.into(), &"poses".into()));
+        assert_eq!(job["program"]["files"][0], name);
+        assert_eq!(job["program"]["targets"], "poses");
         path(&before, true);
         // The path is written for the described arm, so what `correct` is given is what the nominal one has.
         let source = inside(Path::new(&plain), name);
         let told = inside(&folder, "told.json");
         let correct =
-            [&["correct", &arm, &source, "--cut", &cut, "--taught", "--out", &after, "--json", &told][..], &more]
+            [&["correct", &arm, &source, "--cut", &cut, "--taught", "--out", &after, "--json", &told][..], &more[..]]
                 .concat();
         let page = succeed(&correct);
         assert!(page.contains("40 motions, 39 corrected") && page.contains("positions are moved by [um]"), "{page}");
