@@ -163,6 +163,8 @@ impl<'d, const N: usize> Followed<'d, N> {
                     rapid: stop.rapid,
                     spindle: None,
                     tool: None,
+                    width: None,
+                    depth: None,
                 }),
                 Err(_) if problems.len() >= Diagnostics::MOST => {}
                 Err(why) => {

@@ -5,7 +5,7 @@ use nalgebra::{Isometry3, Matrix3, SVector, Translation3, UnitQuaternion, Vector
 use super::{abb, degrees, fanuc, kuka};
 use crate::compensation::{Keep, compensate};
 use crate::controller::{Followed, Frames, Nominal, Order, Postures, Sent, Targets, compose, files, placement};
-use crate::deviation::{Contact, Load, turned};
+use crate::deviation::{Contact, Load, Revolutions, turned};
 use crate::program::{
     Document, Frame, Instruction, Language, Motion, Position, Speed, Target, TextFile, Zone, read, write,
 };
@@ -167,7 +167,7 @@ fn load(points: usize, rapids: impl Fn(usize) -> bool) -> Load {
         into: None,
         turn: Matrix3::identity(),
     };
-    Load { contacts: (0..points).map(contact).collect(), revolution: Vec::new(), undirected: Vec::new() }
+    Load { contacts: (0..points).map(contact).collect(), revolution: Revolutions::None, undirected: Vec::new() }
 }
 
 /// Where the tip of the real arm is when its controller runs a program under the load, off where the program
