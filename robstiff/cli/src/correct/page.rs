@@ -37,7 +37,7 @@ pub fn page(robot: &Description, document: &Document, corrected: &Corrected) -> 
         count(motions.len() + kept.len(), "motion"),
         shifts.len()
     );
-    if let Some(Summary { mean, rms, worst }) = Summary::of(shifts.iter().copied()) {
+    if let Some(Summary { mean, rms, worst }) = Summary::of(shifts.iter().map(|shift| (*shift, 1.0))) {
         let mut table = Table::new(1, ["", "mean", "rms", "worst"]);
         let cells = [mean, rms, worst].map(fine_micrometres);
         table.row(["positions are moved by [um]".to_owned()].into_iter().chain(cells));
