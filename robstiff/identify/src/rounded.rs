@@ -2,7 +2,8 @@
 
 use robstiff::Effect;
 use robstiff_robots::Description;
-use robstiff_robots::effect::physics::Range;
+use robstiff_robots::effect::physics::{Parameter, Range};
+use robstiff_robots::quantity::{Dimension, parse};
 
 /// Significant digits of fitted compliances and of the numbers of effects. No campaign shows four.
 const DIGITS: usize = 6;
@@ -10,8 +11,8 @@ const DIGITS: usize = 6;
 /// Fitted lengths are whole multiples of this (m): no tracker reads a hundredth of it.
 const LENGTH: f64 = 1e-8;
 
-/// Fitted angles are whole multiples of this (degrees): at a reach of 3 m it moves the tool by 5 nm.
-const ANGLE: f64 = 1e-7;
+/// Decimals of fitted angles in degrees: at a reach of 3 m the last moves the tool by 5 nm.
+const DECIMALS: usize = 7;
 
 /// A fitted description with its numbers rounded, but for those that are as declared.
 #[must_use]
@@ -21,7 +22,7 @@ pub fn rounded(mut fitted: Description, declared: &Description) -> Description {
             keep_or(number, before, |length| (length / LENGTH).round() * LENGTH);
         }
         for (number, before) in [(&mut joint.theta, before.theta), (&mut joint.alpha, before.alpha)] {
-            keep_or(number, before, |angle| ((angle.to_degrees() / ANGLE).round() * ANGLE).to_radians());
+            keep_or(number, before, in_degrees);
         }
         let was = |k: usize| before.compliance.get(k).map_or(0.0, |part| part.value);
         for (k, part) in joint.compliance.iter_mut().enumerate() {
@@ -29,7 +30,7 @@ pub fn rounded(mut fitted: Description, declared: &Description) -> Description {
         }
     }
     for effect in fitted.effects.iter_mut().filter(|effect| !declared.effects.contains(effect)) {
-        let round = |(parameter, value): (&robstiff_robots::effect::physics::Parameter, f64)| match parameter.range {
+        let round = |(parameter, value): (&Parameter, f64)| match parameter.range {
             Range::Whole(_) => value,
             _ => significant(value),
         };
@@ -45,6 +46,11 @@ fn keep_or(number: &mut f64, declared: f64, round: impl Fn(f64) -> f64) {
     if *number != declared {
         *number = round(*number);
     }
+}
+
+/// The angle (rad) that is read from its degrees with [`DECIMALS`].
+fn in_degrees(angle: f64) -> f64 {
+    parse(&format!("{:.DECIMALS$} deg", angle.to_degrees()), Dimension::Angle).unwrap_or(angle)
 }
 
 /// The number with [`DIGITS`] significant digits.
@@ -70,7 +76,7 @@ mod tests {
         assert!(yaml.contains("compliance: 2.57123e-7 rad/Nm"), "{yaml}");
         assert_eq!(rounded.joints[3..], declared.joints[3..]);
         assert!((rounded.joints[1].a - fitted.joints[1].a).abs() <= 0.5 * LENGTH * 1.001);
-        assert!((rounded.joints[2].theta - fitted.joints[2].theta).abs().to_degrees() <= 0.5 * ANGLE * 1.001);
+        assert!((rounded.joints[2].theta - fitted.joints[2].theta).abs().to_degrees() <= 0.501e-7);
         // No number has a tail of digits.
         let longest = yaml.split(|c: char| !c.is_ascii_digit() && c != '.').map(str::len).max();
         assert!(longest <= Some(12), "{yaml}");

@@ -25,17 +25,22 @@ pub fn described(
 ) -> Result<Description, Error> {
     let mut description = with_values(&campaign.robot, own, estimates);
     if !is_readable(&description) {
-        // A number of an effect that the readings hardly show may be fitted beyond what it can be; it stays as declared.
+        // A number that the readings hardly show may be fitted beyond what it can be; it stays as declared.
         let (joints, effects): (Vec<_>, Vec<_>) =
             own.iter().zip(estimates).partition(|(own, _)| matches!(own.what, Own::Joint(_)));
-        let with = |description: &Description, (own, estimate): (&Declared, &Estimate)| {
-            with_values(description, slice::from_ref(own), slice::from_ref(estimate))
+        let with = |description: Description, (own, estimate): (&Declared, &Estimate)| {
+            with_values(&description, slice::from_ref(own), slice::from_ref(estimate))
         };
-        let of_joints = joints.into_iter().fold(campaign.robot.clone(), |description, of| with(&description, of));
-        description = effects.into_iter().fold(of_joints, |description, of| {
-            let changed = with(&description, of);
+        let readable = |description: Description, of: (&Declared, &Estimate)| {
+            let changed = with(description.clone(), of);
             if is_readable(&changed) { changed } else { description }
-        });
+        };
+        // Joints together where that can be: a coupling may ask for two that are softer.
+        description = joints.iter().copied().fold(campaign.robot.clone(), with);
+        if !is_readable(&description) {
+            description = joints.into_iter().fold(campaign.robot.clone(), readable);
+        }
+        description = effects.into_iter().fold(description, readable);
     }
     for (joint, by) in description.joints.iter_mut().zip(table) {
         for (number, by) in [&mut joint.theta, &mut joint.d, &mut joint.a, &mut joint.alpha].into_iter().zip(by) {
