@@ -5,7 +5,7 @@ mod common;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use common::{fail, folder, inside, json, run, succeed};
+use common::{Ran, fail, folder, inside, json, run, succeed};
 
 fn file(name: &str) -> String {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/commands/files").join(name).to_str().unwrap().to_owned()
@@ -178,14 +178,17 @@ fn limits_of_the_cell_are_warned_of() {
     }
 }
 
+/// Its pocket begins below the top of its stock, which is all that is said against it.
 #[test]
-fn the_sample_works_without_a_warning() {
+fn the_sample_works_and_cuts_from_its_stock() {
     let folder = folder("cell-sample");
     let files: PathBuf = Path::new(&file("cell.yaml")).parent().unwrap().to_owned();
     for name in ["cell.yaml", "pocket.csv", "roughing.yaml", "slot.ngc"] {
         fs::copy(files.join(name), folder.join(name)).unwrap();
     }
     let [cell, pocket] = ["cell.yaml", "pocket.csv"].map(|name| inside(&folder, name));
-    let said = succeed(&["path", &pocket, "--cell", &cell]);
-    assert!(said.contains("all reached") && said.contains("tool along x"), "{said}");
+    let Ran { code, out, err } = run(&["path", &pocket, "--cell", &cell]);
+    assert!(code == 0 && err.lines().count() == 1 && err.contains("begins in the stock"), "{err}");
+    assert!(out.contains("all reached") && out.contains("tool along x"), "{out}");
+    assert!(out.contains("are cut from the stock"), "{out}");
 }
