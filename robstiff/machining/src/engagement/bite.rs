@@ -165,7 +165,7 @@ fn arcs(depths: &[f64]) -> Vec<Arc> {
         if !is_edge(&arc) || (before.or(after)).is_none() {
             continue;
         }
-        if before.is_none() && low == high || after.is_none() && low == high {
+        if low == high && (before.is_none() || after.is_none()) {
             let inner = if before.is_none() { k + 1 } else { k - 1 };
             arcs[inner] = if before.is_none() { arc.with(&arcs[inner]) } else { arcs[inner].with(&arc) };
             arcs[k].depth = 0.0;
