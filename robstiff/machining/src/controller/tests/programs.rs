@@ -12,7 +12,10 @@ use crate::program::{
 use robstiff::{Effect, Generic, Robot};
 use robstiff_robots::{Description, samples};
 
-const ROBOTS: [(Language, fn() -> Description, [f64; 6]); 3] = [
+/// A controller's language, an arm with it, and angles of its pendant (deg).
+type Arm = (Language, fn() -> Description, [f64; 6]);
+
+const ROBOTS: [Arm; 3] = [
     (Language::Krl, kuka, [5.0, -70.0, 95.0, 10.0, 60.0, -15.0]),
     (Language::Rapid, abb, [5.0, 20.0, 10.0, 10.0, 60.0, -15.0]),
     (Language::Ls, fanuc, [5.0, 20.0, -10.0, 10.0, -60.0, -15.0]),
