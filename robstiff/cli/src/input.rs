@@ -40,13 +40,15 @@ pub fn robot(path: &Path) -> Result<(Description, String), Failure> {
             catalogue::names()
         )));
     }
-    if cell::is_cell(path) {
+    let read = catalogue::read(Path::new(""), path);
+    // A cell is no description, so only what cannot be read is looked at once more.
+    if read.is_err() && cell::is_cell(path) {
         return Err(Failure::new(format_args!(
             "{} is a cell, not a robot's description; `path`, `online`, `stability` and `view` take it by `--cell`",
             path.display()
         )));
     }
-    let (robot, file) = catalogue::read(Path::new(""), path)?;
+    let (robot, file) = read?;
     for warning in robot.warnings() {
         output::complain(format_args!("warning: {}: {warning}", file.display()));
     }

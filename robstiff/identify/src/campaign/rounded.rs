@@ -1,6 +1,6 @@
 //! The steps that a gauge reads in.
 
-use super::{Campaign, Data, Displacements};
+use super::{Campaign, Data};
 
 /// A reading nearer than this part of the largest to another, or to a multiple of a step, is
 /// there; and a step that is less than so much of it is nothing to be unsure by.
@@ -23,8 +23,6 @@ pub(crate) fn step(readings: impl Iterator<Item = f64> + Clone) -> Option<f64> {
     };
     Some(readings.fold(0.0, common)).filter(|step| *step > FINE * largest)
 }
-
-impl Displacements {}
 
 impl Campaign {
     /// One sigma of one axis of one reading (m), where the file declares it, with what the

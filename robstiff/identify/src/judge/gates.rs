@@ -6,14 +6,14 @@ use super::thresholds::{
 use crate::effects::{Side, What};
 use crate::model::Term;
 use crate::observe::Readings;
-use crate::regression::noise::{OUTLYING, discrepancies, rows_of_blocks};
+use crate::regression::noise::{OUTLYING, discrepancies};
 use crate::select::classes::{ByCandidate, Class, classes, extend, weigh_again};
 use crate::select::engine::Engine;
 use crate::select::folds::Nested;
 use crate::select::passes::Found;
 use crate::select::problem::moves;
 use crate::select::search::{search, with, without};
-use crate::select::unseen::groups;
+use crate::select::unseen::{groups, without_each_fold};
 use crate::select::{Problem, Set};
 
 /// A class, and how it fares.
@@ -184,18 +184,13 @@ fn at_other_sizes(engine: &Engine<'_>, found: &Found, classes: &mut [Class], by:
 fn without_each(engine: &Engine<'_>, found: &Found, classes: &[Class], seed: u64) -> Vec<Replaced> {
     let readings = engine.observation.readings();
     let group = groups(readings, &engine.training, super::thresholds::FOLDS, seed);
-    let folds = group.iter().flatten().max().map_or(0, |last| last + 1);
-    let grams = engine.grams(&found.columns, &group);
     // The sum of squares of each block, of the best set and without each class.
     let mut with_all = vec![0.0; readings.blocks];
     let mut less: Vec<Vec<f64>> = vec![vec![0.0; readings.blocks]; classes.len()];
-    for fold in 0..folds {
-        let mut problem = engine.problem(&found.layout, &found.columns, grams.without(fold).total);
+    for (mut problem, rows) in without_each_fold(engine, &found.layout, &found.columns, &group) {
         if problem.learns() {
             problem.learn(&found.best, 4);
         }
-        let unseen: Vec<bool> = group.iter().map(|of| *of == Some(fold)).collect();
-        let rows = rows_of_blocks(readings, &unseen).concat();
         add_squares(&mut with_all, readings, found, &problem, &found.best, found.kappa, &rows);
         for (class, sums) in classes.iter().zip(&mut less) {
             let other = replaced(&problem, &found.best, class, found.kappa);

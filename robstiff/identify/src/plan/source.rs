@@ -50,10 +50,8 @@ impl Source {
         groups: &[Group],
     ) -> Result<Self, Error> {
         let layout = wanted(engine, trace, groups);
-        let columns = engine.linearise(&layout, &engine.point);
-        let grams = engine.grams(&columns, &engine.one_group()).total;
-        let gram = grams[kappa].matrix.clone();
-        let problem = engine.problem(&layout, &columns, grams);
+        let (_, problem) = engine.problem_here(&layout);
+        let gram = problem.grams[kappa].matrix.clone();
         let forms = Forms { layout: &layout, problem: &problem, kappa, best };
         let found = found(&forms, trace);
         let set = sorted(found.iter().map(|of| of.form));

@@ -190,6 +190,14 @@ impl<'c> Engine<'c> {
         Problem::new(layout, grams, &moves, (self.prior, self.start.clone()), (self.likely, self.sizes))
     }
 
+    /// The columns of a layout at the linearisation point, and the problem of all blocks that are fitted to.
+    pub fn problem_here<'l>(&self, layout: &'l Layout) -> (DMatrix<f64>, Problem<'l>) {
+        let columns = self.linearise(layout, &self.point);
+        let grams = self.grams(&columns, &self.one_group()).total;
+        let problem = self.problem(layout, &columns, grams);
+        (columns, problem)
+    }
+
     /// All blocks that are fitted to in one group.
     pub fn one_group(&self) -> Vec<Option<usize>> {
         self.training.iter().map(|fitted| fitted.then_some(0)).collect()

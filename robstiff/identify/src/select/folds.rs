@@ -12,8 +12,7 @@ use super::engine::Engine;
 use super::passes::Found;
 use super::problem::Set;
 use super::search::{Visited, candidates_of, search};
-use super::unseen::groups;
-use crate::regression::noise::rows_of_blocks;
+use super::unseen::{groups, unseen_rows, without_each_fold};
 
 /// The whole search, repeated.
 #[derive(Clone, Debug)]
@@ -89,8 +88,7 @@ fn anew(engine: &Engine<'_>, group: &[Option<usize>], nested: &mut Nested, progr
         progress(&format!("searching without some poses ({} of {})", fold + 1, nested.folds));
         let mut without = engine.fresh();
         without.training = group.iter().map(|of| of.is_some_and(|of| of != fold)).collect();
-        let unseen: Vec<bool> = group.iter().map(|of| *of == Some(fold)).collect();
-        let rows: Vec<usize> = rows_of_blocks(readings, &unseen).concat();
+        let rows = unseen_rows(readings, group, fold);
         let Some((found, alone)) = without.run_from_alone(&|_| ()) else { continue };
         put(&mut nested.left, &found.own.left, &rows, readings.width);
         put(&mut nested.alone, &alone, &rows, readings.width);
@@ -107,14 +105,11 @@ fn by_subtraction(
     progress: &dyn Fn(&str),
 ) {
     let readings = engine.observation.readings();
-    let grams = engine.grams(&found.columns, group);
-    for fold in 0..nested.folds {
+    let folds = without_each_fold(engine, &found.layout, &found.columns, group);
+    for (fold, (mut problem, rows)) in folds.enumerate() {
         progress(&format!("searching without some poses ({} of {})", fold + 1, nested.folds));
-        let mut problem = engine.problem(&found.layout, &found.columns, grams.without(fold).total);
         let start = if problem.learns() { Set::new() } else { found.best.clone() };
         let visited = search(&mut problem, &start, engine.fold_width());
-        let unseen: Vec<bool> = group.iter().map(|of| *of == Some(fold)).collect();
-        let rows: Vec<usize> = rows_of_blocks(readings, &unseen).concat();
         let best = visited.best();
         let kappa = visited.sets.get(&best).map_or(0, |judged| judged.kappa);
         if let Some(fit) = problem.fit(&best, kappa) {

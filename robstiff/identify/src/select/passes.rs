@@ -58,12 +58,8 @@ impl Engine<'_> {
         loop {
             progress("searching");
             let layout = self.layout();
-            let columns = self.linearise(&layout, &self.point.clone());
-            let grams = self.grams(&columns, &self.one_group()).total;
-            let mut problem = self.problem(&layout, &columns, grams);
-            let mut start: Set = names.iter().filter_map(|(name, form)| layout.find(name, form)).collect();
-            start.sort_unstable();
-            let visited = search(&mut problem, &start, first);
+            let (_, mut problem) = self.problem_here(&layout);
+            let visited = search(&mut problem, &named(&layout, &names), first);
             let best = visited.best();
             let kappa = visited.sets.get(&best).map_or(0, |judged| judged.kappa);
             let found: Vec<(String, String)> = best.iter().map(|&form| layout.names(form)).collect();
@@ -171,12 +167,8 @@ impl Engine<'_> {
     /// its own optimum.
     fn last(&mut self, names: &[(String, String)], width: Width) -> Option<Found> {
         let layout = self.layout();
-        let columns = self.linearise(&layout, &self.point.clone());
-        let grams = self.grams(&columns, &self.one_group()).total;
-        let mut problem = self.problem(&layout, &columns, grams);
-        let mut start: Set = names.iter().filter_map(|(name, form)| layout.find(name, form)).collect();
-        start.sort_unstable();
-        let mut visited = search(&mut problem, &start, width);
+        let (columns, mut problem) = self.problem_here(&layout);
+        let mut visited = search(&mut problem, &named(&layout, names), width);
         if !problem.learns() {
             self.over_sizes(&problem, &columns, &mut visited);
         }
@@ -217,4 +209,11 @@ impl Engine<'_> {
     pub fn noise_at(&self, found: &Found) -> f64 {
         self.problem_of(found).fit(&found.best, 0).map_or(0.0, |fit| fit.variance.sqrt())
     }
+}
+
+/// The forms of some names that a layout has.
+fn named(layout: &Layout, names: &[(String, String)]) -> Set {
+    let mut set: Set = names.iter().filter_map(|(name, form)| layout.find(name, form)).collect();
+    set.sort_unstable();
+    set
 }

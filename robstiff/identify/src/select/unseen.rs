@@ -27,14 +27,7 @@ impl<'u> Unseen<'u> {
     pub fn new(engine: &'u Engine<'_>, layout: &'u Layout, columns: &'u DMatrix<f64>) -> Self {
         let readings = engine.observation.readings();
         let group = groups(readings, &engine.training, FOLDS, 1);
-        let grams = engine.grams(columns, &group);
-        let count = group.iter().flatten().max().map_or(0, |last| last + 1);
-        let fold = |fold| {
-            let unseen: Vec<bool> = group.iter().map(|of| *of == Some(fold)).collect();
-            let problem = engine.problem(layout, columns, grams.without(fold).total);
-            (problem, rows_of_blocks(readings, &unseen).concat())
-        };
-        Self { readings, columns, folds: (0..count).map(fold).collect() }
+        Self { readings, columns, folds: without_each_fold(engine, layout, columns, &group).collect() }
     }
 
     /// The error of a set under a discrepancy (m, rad); none where it cannot be fitted without some fold.
@@ -54,6 +47,27 @@ impl<'u> Unseen<'u> {
         }
         (count > 0).then(|| (sum / f64::from(count)).sqrt())
     }
+}
+
+/// The problem without the blocks of each fold in turn, with the rows that are unseen there.
+pub fn without_each_fold<'l>(
+    engine: &Engine<'_>,
+    layout: &'l Layout,
+    columns: &DMatrix<f64>,
+    group: &[Option<usize>],
+) -> impl Iterator<Item = (Problem<'l>, Vec<usize>)> {
+    let grams = engine.grams(columns, group);
+    let count = group.iter().flatten().max().map_or(0, |last| last + 1);
+    (0..count).map(move |fold| {
+        let problem = engine.problem(layout, columns, grams.without(fold).total);
+        (problem, unseen_rows(engine.observation.readings(), group, fold))
+    })
+}
+
+/// The rows of the blocks of a fold.
+pub fn unseen_rows(readings: &Readings, group: &[Option<usize>], fold: usize) -> Vec<usize> {
+    let unseen: Vec<bool> = group.iter().map(|of| *of == Some(fold)).collect();
+    rows_of_blocks(readings, &unseen).concat()
 }
 
 /// The fold of each block, drawn at random, alike from each stratum; none of one that is not fitted

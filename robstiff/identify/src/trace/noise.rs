@@ -66,7 +66,7 @@ impl Known {
 fn repeated(case: &Case<'_>, left: &DVector<f64>) -> Option<(f64, usize)> {
     let readings = case.observation.readings();
     let (mut sum, mut count) = (0.0, 0);
-    // No two positions share an unloaded reading, and a pose that is come to again has its noise anew.
+    // No two positions share an unloaded reading, and each time that a pose is reached has a noise of its own.
     let of = if case.scene.what == What::Positions { &readings.block } else { &readings.visit };
     let mut rows: Vec<Vec<usize>> = vec![Vec::new(); of.iter().max().map_or(0, |last| last + 1)];
     of.iter().enumerate().for_each(|(row, &group)| rows[group].push(row));

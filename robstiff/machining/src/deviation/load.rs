@@ -34,7 +34,7 @@ pub struct Operation<'c> {
     pub at_feeds: bool,
     /// What is met, segment by segment.
     pub survey: Option<&'c Survey>,
-    /// So many angles of a revolution count, besides those at which an arc begins or ends; `None` for
+    /// So many angles of a revolution count, and those at which an arc begins or ends; `None` for
     /// the mean alone.
     pub angles: Option<usize>,
 }
