@@ -2,6 +2,7 @@
 
 use std::slice;
 
+use robstiff_robots::effect::Place;
 use robstiff_robots::effect::physics::{Parameter, Range};
 use robstiff_robots::{Description, Effect};
 
@@ -9,6 +10,7 @@ use super::estimate::{Estimate, with_values};
 use super::found::Found;
 use crate::campaign::Campaign;
 use crate::identify::Error;
+use crate::identify::readable::is_readable;
 use crate::select::always::{Declared, Own};
 use robstiff_robots::DhEntry;
 
@@ -35,9 +37,10 @@ pub fn described(
             let changed = with(description.clone(), of);
             if is_readable(&changed) { changed } else { description }
         };
-        // Joints together where that can be: a coupling may ask for two that are softer.
+        // Joints together: a coupling may ask for two that are softer, and one that is too strong for them is refused
+        // below. A joint that would only sag too far under the arm's own weight stays as declared.
         description = joints.iter().copied().fold(campaign.robot.clone(), with);
-        if !is_readable(&description) {
+        if !is_readable(&description) && is_readable(&weightless(&description)) {
             description = joints.into_iter().fold(campaign.robot.clone(), readable);
         }
         description = effects.into_iter().fold(description, readable);
@@ -91,9 +94,11 @@ fn in_shares(effect: &Effect, description: &Description, compliance: &[f64]) -> 
     }
 }
 
-/// Whether a description can be read back.
-fn is_readable(description: &Description) -> bool {
-    Description::parse("", &description.to_yaml()).is_ok()
+/// A description without what the arm's own weight does.
+fn weightless(description: &Description) -> Description {
+    let mut weightless = description.clone();
+    weightless.effects.retain(|effect| effect.place() != Place::Robot);
+    weightless
 }
 
 /// Whether an effect adds up with one that is declared: an error of the kinematics.
