@@ -9,7 +9,7 @@ use robstiff_robots::angle::{quarter_turns, sin_cos_of_turns};
 use robstiff_robots::words::count;
 use robstiff_robots::{Description, Joint, Placement};
 
-use crate::elements::{Pose, Spring, Torque, contributions, deviation, plays, springs, turn};
+use crate::elements::{Pose, Torque, contributions, deviation, plays, springs, turn};
 use crate::{Convention, Effect, JointKind, Real, Robot, State};
 use weight::Weight;
 
@@ -271,24 +271,24 @@ impl<const N: usize> Robot<N> for Generic<N> {
     fn deflection_with<T: Real>(&self, q: &SVector<T, N>, wrench: &Vector6<T>, state: &mut State<N, T>) -> Vector6<T> {
         let pose = Pose::of(self, q);
         let geometry = pose.geometry();
-        let mut compliance = Matrix6::zeros();
+        let (mut deflection, preload) = (Vector6::zeros(), self.preload(q));
         for i in 0..N {
-            compliance += geometry.unit_compliance(Spring::Joint(i + 1)) * T::of(self.compliance[i]);
+            let twist = geometry.joint_twist(i + 1);
+            deflection += twist * (twist.dot(wrench) * T::of(self.compliance[i]));
         }
-        let (mut beyond, preload) = (Vector6::zeros(), self.preload(q));
         for effect in &self.effects {
             for (spring, value) in springs(effect) {
-                compliance += geometry.unit_compliance(spring) * T::of(value);
+                deflection += geometry.unit_compliance(spring) * wrench * T::of(value);
             }
             let Some(i) = effect.row().map(|joint| joint - 1) else { continue };
             let twist = geometry.joint_twist(i + 1);
             let torque = Torque { preload: preload[i], load: twist.dot(wrench) };
             state.plays[i] = plays(effect, torque, state.plays[i]);
             if let Some(turn) = turn(effect, T::of(self.compliance[i]), q[i], torque, state.plays[i]) {
-                beyond += twist * turn;
+                deflection += twist * turn;
             }
         }
-        compliance * wrench + beyond
+        deflection
     }
 
     fn joint_torques<T: Real>(&self, q: &SVector<T, N>, wrench: &Vector6<T>) -> SVector<T, N> {

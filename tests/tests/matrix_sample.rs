@@ -45,15 +45,15 @@ fn told(record: &Record) -> String {
 
 #[test]
 fn nothing_is_named_where_nothing_is_hidden() {
-    let records = sample(&[Group::Nothing], 24);
+    let records = sample(&[Group::Nothing], 12);
     let all: Vec<&Record> = records.iter().collect();
     assert_rate("nothing", 0.99, &all, |record| record.is_as_expected() == Some(true));
-    // Intervals of the joints: of some hundred, 95 % have the truth in them;
+    // Intervals of the joints: of some sixty, 95 % have the truth in them;
     // those of one campaign are hardly correlated.
     let joints: Vec<Held> = records.into_iter().flat_map(|record| record.joints).collect();
     let (within, joints) = within(&joints);
     println!("{within} of {joints} joints are within their interval");
-    assert!(joints > 100 && within >= fewest(joints, 0.95, LEVEL), "{within} of {joints}");
+    assert!(joints > 50 && within >= fewest(joints, 0.95, LEVEL), "{within} of {joints}");
 }
 
 #[test]
@@ -99,7 +99,7 @@ fn what_is_outside_the_catalogue_gets_no_name_as_the_whole_truth() {
 
 #[test]
 fn what_is_true_stays_named_beside_what_is_outside_the_catalogue() {
-    let records = sample(&[Group::Beside], 8);
+    let records = sample(&[Group::Beside], 6);
     let matter: Vec<&Record> = records.iter().filter(|record| record.has_a_name_to_find()).collect();
     assert_rate("no whole truth", 0.98, &matter, |record| record.is_as_expected() == Some(true));
     assert_rate("named", 0.7, &matter, |record| record.judgement.right);

@@ -2,7 +2,6 @@
 
 use std::path::PathBuf;
 
-use robstiff::with_robot;
 use robstiff_robots::Description;
 use robstiff_robots::text::MOST_OF_URDF;
 use robstiff_robots::urdf::{Export, Moved, Tree, is_said_by_origins};
@@ -60,7 +59,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     let mut said = robot.clone();
     said.effects.retain(is_said_by_origins);
-    let apart = with_robot!(&said, |robot| largest_difference(&robot, &chain));
+    let apart = with_arm!(&said, |robot| largest_difference(&robot, &chain));
     if apart.is_nan() || apart > AGREES {
         return Err(Failure::new(format!(
             "the file would be off the description by up to {} m or rad, and is not written",

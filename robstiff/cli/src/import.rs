@@ -2,7 +2,6 @@
 
 use std::path::PathBuf;
 
-use robstiff::with_robot;
 use robstiff_robots::Description;
 use robstiff_robots::urdf::{Chain, Tree};
 use serde_json::{Value, json};
@@ -65,7 +64,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     // As it will be read, with every number as it is written.
     let yaml = robot.to_yaml();
     let robot = Description::parse(&arguments.out.display().to_string(), &yaml)?;
-    let apart = with_robot!(&robot, |robot| largest_difference(&robot, &chain));
+    let apart = with_arm!(&robot, |robot| largest_difference(&robot, &chain));
     if apart.is_nan() || apart > AGREES {
         return Err(Failure::new(format!(
             "the description would be off the file by up to {} m or rad, and is not written; \

@@ -1,6 +1,19 @@
 //! The command `robstiff`: what a robot's description says about its
 //! stiffness, and what measurements say about the description.
 
+/// Evaluates an expression with the arm of a description, as [`robstiff::with_robot!`] does: it is compiled for each
+/// number of joints. What is built for the unit tests has arms of five and six joints only, for else all would be
+/// compiled twice.
+macro_rules! with_arm {
+    ($description:expr, |$robot:ident| $body:expr) => {{
+        #[cfg(not(test))]
+        let value = robstiff::with_robot!($description, |$robot| $body);
+        #[cfg(test)]
+        let value = robstiff::with_robot!($description, |$robot| $body, 5 6);
+        value
+    }};
+}
+
 mod agreement;
 mod correct;
 mod effect;

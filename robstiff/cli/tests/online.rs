@@ -4,6 +4,7 @@ mod common;
 
 use std::fs;
 use std::path::Path;
+use std::sync::OnceLock;
 
 use common::{fail, folder, inside, json, run, succeed};
 use serde_json::Value;
@@ -21,6 +22,12 @@ fn along(robot: &str, folder: &str, more: &[&str]) -> Value {
     json(&told)
 }
 
+/// That of the robot as declared, which several tests compare with.
+fn usual() -> &'static Value {
+    static USUAL: OnceLock<Value> = OnceLock::new();
+    USUAL.get_or_init(|| along("rv130hsc", "usual", &[]))
+}
+
 fn folder_of(name: &str) -> std::path::PathBuf {
     folder(&format!("online-{name}"))
 }
@@ -35,7 +42,7 @@ fn left(document: &Value) -> [f64; 3] {
 
 #[test]
 fn a_correction_helps_until_it_is_late() {
-    let in_time = left(&along("rv130hsc", "in-time", &[]));
+    let in_time = left(usual());
     assert!(in_time.iter().all(|left| *left < 0.15) && in_time[1] > in_time[0], "{in_time:?}");
     let late = left(&along("rv130hsc", "late", &["--delay", "200 ms"]));
     assert!(late.iter().zip(in_time).all(|(late, in_time)| *late > 2.0 * in_time), "{late:?}");
@@ -45,7 +52,7 @@ fn a_correction_helps_until_it_is_late() {
 
 #[test]
 fn limits_leave_what_is_beyond_them() {
-    let free = left(&along("rv130hsc", "free", &[]));
+    let free = left(usual());
     let small = left(&along("rv130hsc", "small", &["--most", "0.01 mrad"]));
     assert!(small.iter().all(|left| (0.5..0.99).contains(left)), "{small:?}");
     let slow = left(&along("rv130hsc", "slow", &["--fastest", "1e-5 rad/s"]));
@@ -86,10 +93,10 @@ fn encoders_do_not_see_what_is_behind_them() {
 
 #[test]
 fn a_lost_sensor_costs_what_it_does_not_see() {
-    let whole = along("rv130hsc", "whole", &[]);
+    let whole = usual();
     let lost = along("rv130hsc", "lost", &["--lost", "5 s, 2 s"]);
     assert_eq!(whole["without"]["rms_m"], lost["without"]["rms_m"]);
-    for (with, without) in left(&whole).into_iter().zip(left(&lost)) {
+    for (with, without) in left(whole).into_iter().zip(left(&lost)) {
         // Two of thirteen seconds are as if there were no control.
         assert!((with * with + 2.0 / 13.3).sqrt() - without < 0.1 && without > with + 0.1, "{with} {without}");
     }

@@ -9,7 +9,7 @@ use robstiff_identify::trace::{NamedEffect, Options, Trace, trace};
 use robstiff_robots::Description;
 use robstiff_tests::folder::Folder;
 use robstiff_tests::judge_tracing::suspected;
-use robstiff_tests::simulator::{Scenario, Simulated, scattered};
+use robstiff_tests::simulator::{Scenario, Simulated, five_axis, scattered, six_axis};
 
 /// Noise of one reading on each axis, one sigma (m).
 pub const NOISE: f64 = 1e-5;
@@ -26,6 +26,11 @@ pub const SCATTER_SEED: u64 = 1000;
 pub fn plan(declared: &Description, hidden: &[Effect], seed: u64) -> Scenario {
     let truth = scattered(declared, 0.7..1.3, seed + SCATTER_SEED);
     Scenario { noise: NOISE, ..Scenario::new(truth, hidden.to_vec(), seed) }
+}
+
+/// The arm that a campaign is of: with even seeds the five-axis one, with odd ones the six-axis one.
+pub fn arm(seed: u64) -> Description {
+    if seed.is_multiple_of(2) { five_axis() } else { six_axis() }
 }
 
 /// A plan carried out, traced with the arm as declared.

@@ -6,7 +6,7 @@
 //! any outcome was seen: 100.. where nothing is hidden, 200.. for one effect,
 //! 300.. for faults outside the catalogue, 400.. for two effects, 500.. for
 //! other plans of campaigns, 600.. for aliases, 700.. for what looks like wild
-//! rows. Traces err at a stated level, hence counts: five of six, not all.
+//! rows. Traces err at a stated level, hence counts: three of four, not all.
 
 mod aliases;
 mod bench;

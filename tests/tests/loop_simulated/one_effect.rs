@@ -10,9 +10,9 @@
 use robstiff::Effect;
 use robstiff_identify::trace::{Trace, Verdict};
 use robstiff_robots::Description;
-use robstiff_tests::simulator::{five_axis, scattered, six_axis};
+use robstiff_tests::simulator::scattered;
 
-use crate::bench::{FLOOR, NOISE, SCATTER_SEED, assert_most, names_all, traced};
+use crate::bench::{FLOOR, NOISE, SCATTER_SEED, arm, assert_most, names_all, traced};
 
 /// Standard deviations that an estimate may be from the truth.
 const FEW: f64 = 4.0;
@@ -35,78 +35,48 @@ fn coupling(value: f64) -> Effect {
 }
 
 #[test]
-fn tilt_of_joint_2_of_five() {
-    is_found(&five_axis(), tilt(2, 2e-7));
+fn tilt_of_joint_2() {
+    is_found(tilt(2, 2e-7));
 }
 
 #[test]
-fn tilt_of_joint_2_of_six() {
-    is_found(&six_axis(), tilt(2, 2e-7));
+fn tilt_of_joint_3() {
+    is_found(tilt(3, 3e-7));
 }
 
 #[test]
-fn tilt_of_joint_3_of_five() {
-    is_found(&five_axis(), tilt(3, 3e-7));
+fn base() {
+    is_found(BASE);
 }
 
 #[test]
-fn tilt_of_joint_3_of_six() {
-    is_found(&six_axis(), tilt(3, 3e-7));
+fn tool() {
+    is_found(TOOL);
 }
 
 #[test]
-fn base_of_five() {
-    is_found(&five_axis(), BASE);
+fn coupling_of_two_joints() {
+    is_found(coupling(1.4e-7));
 }
 
 #[test]
-fn base_of_six() {
-    is_found(&six_axis(), BASE);
+fn opposing_coupling() {
+    is_found(coupling(-1.4e-7));
 }
 
-#[test]
-fn tool_of_five() {
-    is_found(&five_axis(), TOOL);
-}
-
-#[test]
-fn tool_of_six() {
-    is_found(&six_axis(), TOOL);
-}
-
-#[test]
-fn coupling_of_five() {
-    is_found(&five_axis(), coupling(1.4e-7));
-}
-
-#[test]
-fn coupling_of_six() {
-    is_found(&six_axis(), coupling(1.4e-7));
-}
-
-#[test]
-fn opposing_coupling_of_five() {
-    is_found(&five_axis(), coupling(-1.4e-7));
-}
-
-#[test]
-fn opposing_coupling_of_six() {
-    is_found(&six_axis(), coupling(-1.4e-7));
-}
-
-fn is_found(arm: &Description, hidden: Effect) {
-    let traces: Vec<(u64, Trace)> = (200..203).map(|seed| (seed, traced(arm, &[hidden], seed))).collect();
+fn is_found(hidden: Effect) {
+    let traces: Vec<(u64, Trace)> = (200..204).map(|seed| (seed, traced(&arm(seed), &[hidden], seed))).collect();
     let variance = |trace: &Trace| trace.identified.rms.powi(2) - FLOOR * FLOOR;
     let left = (traces.iter().map(|(_, trace)| variance(trace)).sum::<f64>() / traces.len() as f64).sqrt();
-    assert!(left > 1.8 * NOISE, "{hidden} of {} leaves {left:e} m, too little to judge by", arm.name);
-    assert_most(&format!("{hidden} of {}", arm.name), 2, &traces, |seed, trace| {
+    assert!(left > 1.8 * NOISE, "{hidden} leaves {left:e} m, too little to judge by");
+    assert_most(&hidden.to_string(), 3, &traces, |seed, trace| {
         names_all(trace, &[hidden])
             && trace.verdict == Verdict::Explained
             && trace.effects[0].probability >= 0.95
             && (0.9..1.1).contains(&(trace.after.rms / FLOOR))
             && trace.after.holdout_rms < trace.identified.holdout_rms
             && numbers_are_near(trace, hidden)
-            && joints_are_near(trace, &scattered(arm, 0.7..1.3, seed + SCATTER_SEED))
+            && joints_are_near(trace, &scattered(&arm(seed), 0.7..1.3, seed + SCATTER_SEED))
     });
 }
 

@@ -3,18 +3,16 @@
 
 use robstiff::Effect;
 use robstiff_identify::trace::{NoiseSource, Trace, Verdict};
-use robstiff_robots::Description;
-use robstiff_tests::simulator::{Scenario, five_axis, six_axis};
+use robstiff_tests::simulator::Scenario;
 
-use crate::bench::{FLOOR, NOISE, assert_most, names_all, plan, trace_files, trace_text};
+use crate::bench::{FLOOR, NOISE, arm, assert_most, names_all, plan, trace_files, trace_text};
 
 const TILT: Effect = Effect::TransverseCompliance { joint: 3, value: 3e-7 };
 
-/// Three campaigns on each arm, changed from the usual plan.
+/// Four campaigns, changed from the usual plan.
 fn campaigns(hidden: &[Effect], change: impl Fn(Scenario) -> Scenario, more: &str) -> Vec<(u64, Trace)> {
-    let trace = |arm: &Description, seed| trace_files(&change(plan(arm, hidden, seed)).run(), arm, more);
-    let arms = [five_axis(), six_axis()];
-    (500..503).flat_map(|seed| arms.each_ref().map(|arm| (seed, trace(arm, seed)))).collect()
+    let trace = |seed| (seed, trace_files(&change(plan(&arm(seed), hidden, seed)).run(), &arm(seed), more));
+    (500..504).map(trace).collect()
 }
 
 fn is_found(trace: &Trace) -> bool {
@@ -30,11 +28,11 @@ fn noise_is_taken_as_stated() {
         assert_eq!(trace.noise_source, NoiseSource::Declared);
         assert!((trace.noise / NOISE - 1.0).abs() < 1e-12, "{}", trace.noise);
     };
-    assert_most("with stated noise", 5, &campaigns(&[TILT], states, ""), |_, trace| {
+    assert_most("with stated noise", 3, &campaigns(&[TILT], states, ""), |_, trace| {
         stated(trace);
         is_found(trace)
     });
-    assert_most("nothing, with stated noise", 5, &campaigns(&[], states, ""), |_, trace| {
+    assert_most("nothing, with stated noise", 3, &campaigns(&[], states, ""), |_, trace| {
         stated(trace);
         trace.verdict == Verdict::Adequate
     });
@@ -42,7 +40,7 @@ fn noise_is_taken_as_stated() {
 
 #[test]
 fn noise_is_estimated_where_it_is_not_stated() {
-    assert_most("without stated noise", 5, &campaigns(&[TILT], |scenario| scenario, ""), |_, trace| {
+    assert_most("without stated noise", 3, &campaigns(&[TILT], |scenario| scenario, ""), |_, trace| {
         assert_ne!(trace.noise_source, NoiseSource::Declared);
         is_found(trace) && (0.85..1.15).contains(&(trace.noise / NOISE))
     });
@@ -52,7 +50,7 @@ fn noise_is_estimated_where_it_is_not_stated() {
 #[test]
 fn noise_that_is_stated_too_small_is_noticed() {
     let more = "noise: {displacement: 5 um}\n";
-    assert_most("too small a noise", 5, &campaigns(&[], |scenario| scenario, more), |_, trace| {
+    assert_most("too small a noise", 3, &campaigns(&[], |scenario| scenario, more), |_, trace| {
         trace.verdict == Verdict::Unexplained && trace.unexplained > 0.5
     });
 }
@@ -62,7 +60,7 @@ fn noise_that_is_stated_too_small_is_noticed() {
 fn rows_without_a_shared_reading() {
     let own =
         |scenario| Scenario { ramp: vec![1.0], visits: 5, shares_unloaded: false, states_noise: true, ..scenario };
-    assert_most("rows of their own", 5, &campaigns(&[TILT], own, ""), |_, trace| is_found(trace));
+    assert_most("rows of their own", 3, &campaigns(&[TILT], own, ""), |_, trace| is_found(trace));
 }
 
 /// A good tracker sees that large loads act on the arm as they have bent it,
@@ -70,7 +68,7 @@ fn rows_without_a_shared_reading() {
 #[test]
 fn what_a_bent_arm_does_is_not_missing() {
     let precise = |scenario| Scenario { noise: 2e-6, force: [1500.0, 2500.0], ..scenario };
-    assert_most("large loads, little noise", 5, &campaigns(&[], precise, ""), |_, trace| {
+    assert_most("large loads, little noise", 3, &campaigns(&[], precise, ""), |_, trace| {
         trace.verdict == Verdict::Adequate
     });
 }
@@ -83,7 +81,7 @@ fn rotations_are_used() {
     let sees_the_last_joint =
         |trace: &Trace| trace.estimates.iter().rfind(|e| e.name.starts_with("joint")).is_some_and(|e| e.std.is_some());
     let traces = campaigns(&[TILT], turned, "");
-    assert_most("with rotations", 5, &traces, |_, trace| is_found(trace) && sees_the_last_joint(trace));
+    assert_most("with rotations", 3, &traces, |_, trace| is_found(trace) && sees_the_last_joint(trace));
     for (_, trace) in campaigns(&[TILT], |scenario| scenario, "") {
         assert_eq!(sees_the_last_joint(&trace), trace.robot == "Rv130hsc");
     }
@@ -100,11 +98,11 @@ fn readings_and_loads_off_the_tcp() {
         wrench_in_tool: true,
         ..scenario
     };
-    assert_most("off the tcp", 5, &campaigns(&[TILT], off, ""), |_, trace| is_found(trace));
-    assert_most("nothing, off the tcp", 5, &campaigns(&[], off, ""), |_, trace| trace.verdict == Verdict::Adequate);
+    assert_most("off the tcp", 3, &campaigns(&[TILT], off, ""), |_, trace| is_found(trace));
+    assert_most("nothing, off the tcp", 3, &campaigns(&[], off, ""), |_, trace| trace.verdict == Verdict::Adequate);
     // Taken for readings of the TCP, they are another arm's.
     let seen_wrongly = "measured: {frame: tool, at: tcp}";
-    for (seed, declared) in [(500, five_axis()), (501, six_axis())] {
+    for (seed, declared) in [500, 501].map(|seed| (seed, arm(seed))) {
         let simulated = off(plan(&declared, &[], seed)).run();
         let said = simulated.campaign_yaml().replace("measured: {frame: tool, at: [0.18, -0.12, 0.1]}", seen_wrongly);
         assert!(said.contains(seen_wrongly));
@@ -116,7 +114,7 @@ fn readings_and_loads_off_the_tcp() {
 #[test]
 fn held_out_poses_judge() {
     let traces = campaigns(&[TILT], |scenario| scenario, "holdout: {fraction: 0.25, seed: 3}\n");
-    assert_most("with poses held out", 5, &traces, |_, trace| {
+    assert_most("with poses held out", 3, &traces, |_, trace| {
         assert_eq!((trace.poses, trace.held_out.len()), (40, 10));
         assert_eq!(trace.pose_errors.iter().filter(|pose| pose.held_out).count(), 10);
         is_found(trace)

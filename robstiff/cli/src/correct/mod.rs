@@ -5,8 +5,8 @@ mod page;
 
 use std::path::PathBuf;
 
+use robstiff::Generic;
 use robstiff::nalgebra::{Isometry3, SVector, Unit, Vector3};
-use robstiff::{Generic, with_robot};
 use robstiff_machining::controller::{Followed, Frames, Nominal, Postures, Stop, placement};
 use robstiff_machining::program::{self, Document, TextFile};
 use robstiff_robots::Description;
@@ -102,7 +102,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         tool: spindle.unwrap_or(Vector3::z_axis()),
         request: request.as_ref(),
     };
-    let corrected = output::working("correcting the program", |_| with_robot!(&robot, |arm| job.correct(&arm)))?;
+    let corrected = output::working("correcting the program", |_| with_arm!(&robot, |arm| job.correct(&arm)))?;
     for ((path, source), file) in targets.iter().zip(&sources).zip(&corrected.files) {
         files.add(path, source.with_mark(&file.text));
     }

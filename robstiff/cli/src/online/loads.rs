@@ -3,8 +3,8 @@
 use std::ops::Range;
 use std::path::Path;
 
+use robstiff::Robot;
 use robstiff::nalgebra::{Matrix3, SVector, Unit, Vector3, Vector6};
-use robstiff::{Robot, with_robot};
 use robstiff_machining::deviation::{Deviation, ForceTable, Surface};
 use robstiff_machining::milling::{CutFile, CutFrame, ForceFrame, Forces};
 use robstiff_machining::online::{HeldBack, Instant, LeftOfSine, Timeline, left_of_sine, simulate_along};
@@ -366,7 +366,7 @@ impl Course {
 
 /// What turns the forces of a cut at a pose into the base frame.
 fn turn(forces: &Forces, setup: &Setup, q: &[f64], arguments: &Arguments) -> Result<Matrix3<f64>, Failure> {
-    let pose = with_robot!(&setup.robot, |arm| arm.transform(&SVector::from_column_slice(q)));
+    let pose = with_arm!(&setup.robot, |arm| arm.transform(&SVector::from_column_slice(q)));
     let tool: Matrix3<f64> = pose.fixed_view::<3, 3>(0, 0).into_owned();
     let (given, option) = match arguments.load.spindle_axis {
         Some(axis) => (Some(axis), "--spindle-axis"),

@@ -7,8 +7,8 @@ mod reach;
 
 use std::path::{Path, PathBuf};
 
+use robstiff::Generic;
 use robstiff::nalgebra::{Matrix4, Unit, Vector3};
-use robstiff::{Generic, with_robot};
 use robstiff_machining::online::{Controller, Limits, Sensing, Servo};
 use robstiff_robots::Description;
 use robstiff_robots::quantity::Dimension;
@@ -249,7 +249,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let variants = arguments.control.variants(&name);
     let silent = arguments.control.lost.map(|Loss([from, length])| from..from + length);
     let simulated = output::working("simulating the control", |_| {
-        with_robot!(robot, |arm| {
+        with_arm!(robot, |arm| {
             let model = Generic::new(&model).map_err(|error| Failure::new(format!("{name}: {error}")))?;
             request.simulate((&arm, &model), &variants, silent.as_ref())
         })

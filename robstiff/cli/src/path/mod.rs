@@ -12,8 +12,8 @@ mod stock;
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
+use robstiff::Robot;
 use robstiff::nalgebra::{Matrix4, Rotation3, SVector, Unit, UnitQuaternion, Vector3};
-use robstiff::{Robot, with_robot};
 use robstiff_machining::cell::{Cell, TooFast};
 use robstiff_machining::inverse::Inverse;
 use robstiff_machining::path::{Jump, ToolPath};
@@ -111,7 +111,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let foreseen = program.as_ref().map(|program| program.foreseen());
     files.foresee(out.into_iter().chain(&arguments.json).chain(foreseen.iter().flatten()))?;
     let solved = output::working("solving the path", |_| {
-        with_robot!(robot, |robot| solve(&robot, path, setup.cell(), start.as_deref(), request.as_ref()))
+        with_arm!(robot, |robot| solve(&robot, path, setup.cell(), start.as_deref(), request.as_ref()))
     })?;
     for fast in &solved.too_fast {
         output::complain(format_args!("warning: {}", too_fast(fast, robot, &path.file)));
@@ -124,7 +124,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let mut page = page(robot, &file.display().to_string(), &solved, axis);
     if let Some(program) = &program {
         let commanded = solved.commanded();
-        let sent = with_robot!(robot, |arm| program.compose(&arm, robot, path, &opened.place, &commanded))?;
+        let sent = with_arm!(robot, |arm| program.compose(&arm, robot, path, &opened.place, &commanded))?;
         document["program"] = sent.document();
         page += &sent.page();
         let facts = facts::Facts {

@@ -2,7 +2,7 @@
 
 use robstiff::analysis::principal_directions;
 use robstiff::nalgebra::{Matrix4, SVector, Vector3, Vector6};
-use robstiff::{Convention, Generic, JointKind, Robot, State, with_robot};
+use robstiff::{Convention, Generic, JointKind, Robot, State};
 use robstiff_identify::campaign::{Campaign, Data};
 use robstiff_identify::identify::{PredictedRow, predict};
 use robstiff_robots::quantity::{self, Dimension};
@@ -131,7 +131,7 @@ pub struct Scene {
 impl Scene {
     /// The poses asked for.
     pub fn new(robot: &Description, kind: Kind, rows: &[Row]) -> Self {
-        let displacements = with_robot!(robot, |arm| displacements(&arm, kind, rows));
+        let displacements = with_arm!(robot, |arm| displacements(&arm, kind, rows));
         // Of all rows: the worst of a path counts whether or not it is drawn.
         let sizes = rows.iter().zip(&displacements);
         // A row without a value among others that have one has none.
@@ -144,7 +144,7 @@ impl Scene {
         let stride = rows.len().div_ceil(MOST_POSES).max(1);
         let drawn = drawn(&sizes, stride);
         let mut poses: Vec<Pose> =
-            with_robot!(robot, |arm| drawn.iter().map(|&row| pose(robot, &arm, row, &rows[row].q)).collect());
+            with_arm!(robot, |arm| drawn.iter().map(|&row| pose(robot, &arm, row, &rows[row].q)).collect());
         for pose in &mut poses {
             (pose.displacement, pose.value) = (displacements[pose.row], sizes[pose.row]);
         }
@@ -242,8 +242,8 @@ impl Scene {
         json!({
             "robot": robot.name,
             "convention": robot.convention.word(),
-            "base": with_robot!(robot, |arm| placement(&base(&arm))),
-            "tool": with_robot!(robot, |arm| placement(&tool(&arm))),
+            "base": with_arm!(robot, |arm| placement(&base(&arm))),
+            "tool": with_arm!(robot, |arm| placement(&tool(&arm))),
             "joints": joints.iter().map(joint).collect::<Value>(),
             // Their part in the compliance is in that of the poses.
             "effects": robot.effects.iter().map(ToString::to_string).collect::<Vec<_>>(),

@@ -1,11 +1,11 @@
 //! A robot in one pose: everything that is shown of it.
 
+use robstiff::Robot;
 use robstiff::analysis::{
     self, PrincipalDirections, Stiffness, directional_compliance, directional_stiffness, principal_directions,
 };
 use robstiff::elements::{Element, contributions, share_along, share_of_translation};
 use robstiff::nalgebra::{DMatrix, Matrix3, Matrix4, Matrix6, SVector, Unit, Vector3};
-use robstiff::{Robot, with_robot};
 use robstiff_robots::Description;
 
 /// What is shown of a robot in one pose, whatever its number of joints.
@@ -55,7 +55,7 @@ pub struct Share {
 impl Shown {
     /// The robot at joint coordinates `q`, one for each joint.
     pub fn new(robot: &Description, q: Vec<f64>) -> Self {
-        with_robot!(robot, |robot| shown(&robot, q))
+        with_arm!(robot, |robot| shown(&robot, q))
     }
 }
 

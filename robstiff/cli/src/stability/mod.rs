@@ -7,10 +7,10 @@ mod picture;
 
 use std::path::PathBuf;
 
+use robstiff::Robot;
 use robstiff::analysis::translational_compliance;
 use robstiff::elements::{compliance_under, contributions, contributions_under};
 use robstiff::nalgebra::{Matrix3, SVector, Unit, Vector3, Vector6};
-use robstiff::{Robot, with_robot};
 use robstiff_machining::milling::{Cut, Forces};
 use robstiff_machining::stability::{FeedLimit, Modes, mass_of_first_mode, over_feeds};
 use robstiff_robots::Description;
@@ -132,7 +132,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     setup.protect(&mut files);
     forces::protect(&mut files, &cut_path, &file);
     files.foresee(arguments.out.iter().chain(&arguments.json))?;
-    let predicted = with_robot!(robot, |arm| predict(&arm, &setup, cut, ([speed, period], axis), &q, arguments))?;
+    let predicted = with_arm!(robot, |arm| predict(&arm, &setup, cut, ([speed, period], axis), &q, arguments))?;
     if let Some(path) = &arguments.out {
         files.add(path, picture::svg(&predicted, cut));
     }

@@ -1,9 +1,9 @@
 //! What the pictures of a report are drawn from: the arm in its poses, and the
 //! residual against what it depends on most.
 
+use robstiff::Robot;
 use robstiff::elements::Pose;
 use robstiff::nalgebra::{DMatrix, DVector, Matrix3, Matrix4, SVector, Vector3};
-use robstiff::{Robot, with_robot};
 use robstiff_identify::campaign::{Campaign, Data, Frame, Observation, PositionRow};
 use robstiff_identify::trace::Trace;
 use robstiff_robots::Description;
@@ -58,7 +58,7 @@ pub fn arms(trace: &Trace, campaign: &Campaign) -> Vec<Arm> {
     let arm = |(row, id): (&Option<usize>, &String)| {
         let row = (*row)?;
         let residual = trace.residuals.get(row)?;
-        let (points, turn) = with_robot!(&trace.description, |robot| chain(&robot, rows[row].q));
+        let (points, turn) = with_arm!(&trace.description, |robot| chain(&robot, rows[row].q));
         let in_base = |residual: [f64; 3]| -> [f64; 3] {
             let um = Vector3::from(residual) * 1e6;
             match data.measured_frame {

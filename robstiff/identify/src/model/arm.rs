@@ -51,7 +51,8 @@ impl Frame {
 
 /// The turn by a rotation vector (rad).
 pub fn turn_by(vector: &Vector3<f64>) -> Matrix3<f64> {
-    *Rotation3::new(*vector).matrix()
+    // Most vectors of a rig are zero, and it is asked at every row.
+    if *vector == Vector3::zeros() { Matrix3::identity() } else { *Rotation3::new(*vector).matrix() }
 }
 
 fn about(axis: usize, angle: f64) -> Matrix3<f64> {

@@ -77,6 +77,9 @@ impl Rig {
         };
         let (mut force, moment) = (into_base * read(0), into_base * read(3));
         for (frame, turn) in [(BASE, Matrix3::identity()), (TOOL, tcp.turn)] {
+            if [&self.force_turn, &self.force_bias, &self.force_scale].iter().all(|of| is_zero(&of[frame])) {
+                continue;
+            }
             let inside = turn.transpose() * force;
             let scaled = inside + inside.component_mul(&self.force_scale[frame]);
             force = turn * (turn_by(&self.force_turn[frame]) * scaled + self.force_bias[frame]);
@@ -94,11 +97,15 @@ impl Rig {
     /// A displacement `[d; r]` of that point in the base frame as it is read in the frame of the
     /// file; `declared` is the tool as the controller knows it.
     pub fn seen(&self, twist: &Vector6<f64>, tcp: &Frame, declared: &Frame) -> Vector6<f64> {
-        let turned = turn_by(&self.reading_turn[BASE]);
-        let in_tool = tcp.turn * turn_by(&self.reading_turn[TOOL]) * tcp.turn.transpose();
-        let see = turned * in_tool * (1.0 + self.reading_scale);
-        let d = self.as_filed(&(see * twist.fixed_rows::<3>(0)), declared);
-        let r = self.as_filed(&(see * twist.fixed_rows::<3>(3)), declared);
+        let turns = |vector: &Vector3<f64>| {
+            if self.reading_turn.iter().all(is_zero) {
+                return *vector;
+            }
+            let in_tool = tcp.turn * turn_by(&self.reading_turn[TOOL]) * tcp.turn.transpose();
+            turn_by(&self.reading_turn[BASE]) * (in_tool * vector)
+        };
+        let see = |from: usize| turns(&twist.fixed_rows::<3>(from).into_owned()) * (1.0 + self.reading_scale);
+        let (d, r) = (self.as_filed(&see(0), declared), self.as_filed(&see(3), declared));
         Vector6::new(d.x, d.y, d.z, r.x, r.y, r.z)
     }
 
@@ -134,6 +141,11 @@ impl Rig {
         self.stand.rotation.renormalize();
         self.stand_off = [Vector3::zeros(); 2];
     }
+}
+
+/// Most of what may be wrong with a rig is zero, and is asked at every row.
+fn is_zero(vector: &Vector3<f64>) -> bool {
+    vector.iter().all(|x| *x == 0.0)
 }
 
 #[cfg(test)]

@@ -53,53 +53,62 @@ const GAUSS: [(f64, f64); 3] = [
     (0.887_298_334_620_741_7, 0.277_777_777_777_777_8),
 ];
 
+/// One term of what a spring makes of a wrench `F`: a twist `share * moves (by^T F)`.
+#[derive(Clone, Copy, Debug)]
+pub struct Part {
+    /// Its share of the compliance.
+    pub share: f64,
+    /// The twist `[d; r]` of the tool centre point per unit of the coordinate that yields.
+    pub moves: Vector6<f64>,
+    /// That of the coordinate whose torque counts: the same one, but for a coupling.
+    pub by: Vector6<f64>,
+}
+
+impl Part {
+    /// The twist under a wrench at the tool centre point (N, Nm), per unit of the compliance.
+    pub fn twist(&self, wrench: &Vector6<f64>) -> Vector6<f64> {
+        self.moves * (self.share * self.by.dot(wrench))
+    }
+}
+
 impl Spring {
-    /// Hands over the twists of the tool centre point per unit of each coordinate, with the share
-    /// of the compliance that it has. A coupling has none of its own.
-    fn coordinates(&self, stand: &Stand, kinds: &[JointKind], mut of: impl FnMut(f64, Vector6<f64>)) {
+    /// The terms of what an arm that stands somewhere yields by.
+    pub fn parts(&self, stand: &Stand, kinds: &[JointKind]) -> Vec<Part> {
         let tcp = &stand.tcp.at;
-        let mut of_frame = |site: &Site, axes: &[usize], slides: bool| {
+        let own = |share: f64, screw: Screw| {
+            let moves = screw.twist_at(tcp);
+            Part { share, moves, by: moves }
+        };
+        let joint = |joint: usize| stand.joint_screw(joint - 1, kinds[joint - 1]);
+        let of_frame = |site: &Site, axes: &[usize], slides: bool| {
             let frame = match *site {
                 Site::Base => &stand.base,
                 Site::Joint(joint) => &stand.joints[joint - 1],
                 Site::Flange => stand.flange(),
             };
-            for &axis in axes {
-                of(1.0, Screw { axis: frame.axis(axis), through: frame.at, slides }.twist_at(tcp));
-            }
+            axes.iter().map(|&axis| own(1.0, Screw { axis: frame.axis(axis), through: frame.at, slides })).collect()
         };
         match self {
-            Self::Joint(joint) => of(1.0, stand.joint_screw(joint - 1, kinds[joint - 1]).twist_at(tcp)),
-            Self::Coupling(_) => {}
+            Self::Joint(of) => vec![own(1.0, joint(*of))],
+            Self::Coupling(of) => {
+                let [i, j] = of.map(|of| joint(of).twist_at(tcp));
+                vec![Part { share: 1.0, moves: i, by: j }, Part { share: 1.0, moves: j, by: i }]
+            }
             Self::Turn(site, axes) => of_frame(site, axes, false),
             Self::Shift(site, axes) => of_frame(site, axes, true),
             Self::Bending(link) | Self::Torsion(link) => {
-                let Some((from, along)) = beam(stand, *link) else { return };
+                let Some((from, along)) = beam(stand, *link) else { return Vec::new() };
                 let axis = along.normalize();
                 let turn = |axis: Vector3<f64>, through: Vector3<f64>| Screw { axis, through, slides: false };
                 if let Self::Torsion(_) = self {
-                    return of(1.0, turn(axis, from).twist_at(tcp));
+                    return vec![own(1.0, turn(axis, from))];
                 }
                 let across = axis.cross(&Vector3::ith(axis.iamin(), 1.0)).normalize();
-                for (place, weight) in GAUSS {
-                    for axis in [across, axis.cross(&across)] {
-                        of(weight, turn(axis, from + along * place).twist_at(tcp));
-                    }
-                }
+                let both = [across, axis.cross(&across)];
+                let at = |(place, weight)| both.map(|axis| own(weight, turn(axis, from + along * place)));
+                GAUSS.into_iter().flat_map(at).collect()
             }
         }
-    }
-
-    /// The twist `[d; r]` (m, rad) of the tool centre point under a wrench there (N, Nm), per unit of
-    /// the compliance.
-    pub fn twist(&self, stand: &Stand, kinds: &[JointKind], wrench: &Vector6<f64>) -> Vector6<f64> {
-        if let Self::Coupling([i, j]) = self {
-            let [i, j] = [i, j].map(|joint| stand.joint_screw(joint - 1, kinds[joint - 1]).twist_at(&stand.tcp.at));
-            return i * j.dot(wrench) + j * i.dot(wrench);
-        }
-        let mut twist = Vector6::zeros();
-        self.coordinates(stand, kinds, |share, of| twist += of * (share * of.dot(wrench)));
-        twist
     }
 
     /// By how much a joint (from 1) turns for a unit of the compliance, given the torque of each.
@@ -155,7 +164,7 @@ mod tests {
             let pose = Pose::of(&robot, &SVector::from(q));
             for (own, runtime) in &same {
                 let expected = pose.geometry().unit_compliance(*runtime) * wrench;
-                let found = own.twist(&stand, &kinds, &wrench);
+                let found: Vector6<f64> = own.parts(&stand, &kinds).iter().map(|part| part.twist(&wrench)).sum();
                 assert!((expected - found).amax() < 1e-10 * expected.amax().max(1.0), "{own:?} {expected} {found}");
             }
         }

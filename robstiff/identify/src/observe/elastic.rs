@@ -109,14 +109,14 @@ pub fn yielding(term: &Term, loaded: &Loaded, sequence: &Sequence, encoders: &[u
     let rows = loaded.wrenches.len();
     match term {
         Term::Spring(spring) => {
-            let twist = |row: usize| {
-                let stand = &loaded.stands[loaded.station[row]];
-                spring.twist(stand, &loaded.kinds, &loaded.wrenches[row])
-            };
+            // The rows of a station share where the spring is.
+            let parts: Vec<_> = loaded.stands.iter().map(|stand| spring.parts(stand, &loaded.kinds)).collect();
+            let twist = |(&at, wrench): (&usize, &Vector6<f64>)| parts[at].iter().map(|part| part.twist(wrench)).sum();
+            let twists = loaded.station.iter().zip(&loaded.wrenches).map(twist).collect();
             let turn = |&joint: &usize| -> Vec<f64> {
                 (0..rows).map(|row| spring.turn_of(joint, |other| loaded.torques[other - 1][row])).collect()
             };
-            Some(Yielding { twists: (0..rows).map(twist).collect(), turns: encoders.iter().map(turn).collect() })
+            Some(Yielding { twists, turns: encoders.iter().map(turn).collect() })
         }
         Term::Law(joint, law) => {
             let turns = law(&sequence.torques(loaded, joint - 1));

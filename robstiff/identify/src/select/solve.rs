@@ -74,12 +74,10 @@ impl Engine<'_> {
         let mut point = self.only(layout, &chosen, from);
         let (mut variance, mut scales) = self.start.clone();
         let mut solved: Option<(Fit, Vec<Gram>, Vec<Prior>)> = None;
-        for step in 0..=steps {
+        let predict = |at: &Point| self.observation.predict(&at.world, &layout.parameters, &layout.values(&at.values));
+        let mut predicted = predict(&point);
+        for step in 0..steps.max(1) {
             let values = layout.values(&point.values);
-            let predicted = self.observation.predict(&point.world, &layout.parameters, &values);
-            if step == steps && solved.is_some() {
-                break;
-            }
             let columns = self.observation.columns(&point.world, &layout.parameters, &values, &chosen);
             let mut target = &readings.values - &predicted;
             for (k, &column) in chosen.iter().enumerate() {
@@ -108,12 +106,10 @@ impl Engine<'_> {
                 values.insert(part.keys[k].clone(), found.mean[at]);
             }
             let next = self.absorbed(layout, Point { world: point.world.clone(), values });
-            let moved = {
-                let values = layout.values(&next.values);
-                self.observation.predict(&next.world, &layout.parameters, &values) - &predicted
-            };
-            let moved = readings.rms(&moved, (0..readings.rows()).filter(|&row| self.training[readings.block[row]]));
-            point = next;
+            let there = predict(&next);
+            let trained = (0..readings.rows()).filter(|&row| self.training[readings.block[row]]);
+            let moved = readings.rms(&(&there - &predicted), trained);
+            (point, predicted) = (next, there);
             let done = moved < SETTLED * variance.sqrt() && step > 0;
             solved = Some((found, grams, priors));
             if done {
@@ -121,8 +117,7 @@ impl Engine<'_> {
             }
         }
         let (mut found, grams, priors) = solved?;
-        let values = layout.values(&point.values);
-        let left = &readings.values - self.observation.predict(&point.world, &layout.parameters, &values);
+        let left = &readings.values - predicted;
         let own = found.columns.clone();
         let (score, kappa) = self.weigh(&grams, &own, &priors, (variance, &scales))?;
         if let Some(again) = fit(&grams[kappa], &own, &priors, self.prior, Start { variance, scales: &scales }, 8) {
