@@ -96,6 +96,9 @@ pub struct Travel {
 /// How many places are named.
 const MOST_PLACES: usize = 10;
 
+/// A joint that is slower stands (rad/s or m/s): what it moves by is rounding.
+const STANDS: f64 = 1e-9;
+
 /// Places that are nearer to each other than this part of the job are one.
 const APART: f64 = 0.01;
 
@@ -152,7 +155,8 @@ impl Job<'_> {
         let (before, point) = (self.points.get(i.checked_sub(1)?)?, &self.points[i]);
         let feed = point.feed.filter(|feed| *feed > 0.0 && !point.rapid)?;
         let time = (point.s - before.s).abs() / feed;
-        (time > 0.0).then(|| (point.q[joint] - before.q[joint]).abs() / time)
+        let speed = (point.q[joint] - before.q[joint]).abs() / time;
+        (time > 0.0).then_some(if speed < STANDS { 0.0 } else { speed })
     }
 
     /// What a joint does.

@@ -113,6 +113,7 @@ fn a_joint_that_is_too_fast_is_named_with_the_feed_that_it_follows() {
     let (i, speed) = job.travel(0).speed.unwrap();
     assert!(i == 30 && (speed - 1.0).abs() < 0.01, "{i} {speed}");
     assert_eq!(job.travel(0).margin.unwrap().0, 49);
+    assert_eq!(job.travel(1).speed.unwrap().1, 0.0);
     // A rapid has no speed that is known.
     assert_eq!(job.speed(1, 0), None);
     let page = html(&job);
