@@ -79,13 +79,19 @@ fn correcting_before_or_after_writing_is_the_same() {
         let [plain, before, after] = ["plain", "before", "after"].map(|name| inside(&folder, name));
         let page = path(&plain, false);
         assert!(page.contains(&format!("Program ({language}): 40 motions to poses")), "{page}");
-        let mut expected = [name, "job.json"];
+        let mut expected = [name, "job.html", "job.json"];
         expected.sort_unstable();
         assert_eq!(names(Path::new(&plain)), expected);
         let job = json(&inside(Path::new(&plain), "job.json"));
         assert_eq!(job["program"]["files"][0], name);
         assert_eq!(job["program"]["targets"], "poses");
+        let sheet = |folder: &str| fs::read_to_string(inside(Path::new(folder), "job.html")).unwrap();
+        let (without, said) = (sheet(&plain), "No force is given");
+        assert!(without.contains(said) && without.contains("<h2>The joints</h2>") && without.contains(name));
         path(&before, true);
+        let corrected = sheet(&before);
+        assert!(!corrected.contains(said) && corrected.contains("<h2>Before and after the correction</h2>"));
+        assert!(corrected.contains("if the model is true") && corrected.contains("shade9"));
         // The path is written for the described arm, so what `correct` is given is what the nominal one has.
         let source = inside(Path::new(&plain), name);
         let told = inside(&folder, "told.json");

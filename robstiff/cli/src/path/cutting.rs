@@ -223,6 +223,11 @@ impl ForceArguments {
 }
 
 impl CuttingRequest {
+    /// What the path cuts from, in its frame.
+    pub fn stock(&self) -> Option<&Stock> {
+        self.stock.stock()
+    }
+
     /// The same with the path corrected.
     pub fn compensating(self) -> Self {
         Self { compensate: true, ..self }

@@ -85,7 +85,8 @@ fn or_none(length: Option<f64>) -> String {
     length.map_or("-".to_owned(), micrometres)
 }
 
-fn surface(cutting: &Cutting) -> &'static str {
+/// What is machined.
+pub fn surface(cutting: &Cutting) -> &'static str {
     if cutting.surface == "side" { "wall" } else { "floor" }
 }
 

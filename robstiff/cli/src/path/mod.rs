@@ -4,6 +4,8 @@
 pub mod cutting;
 pub mod deviation;
 mod doubts;
+mod facts;
+mod job;
 mod robot_program;
 mod stock;
 
@@ -125,8 +127,19 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         let sent = with_arm!(robot, |arm| program.compose(&arm, robot, path, &opened.place, &commanded))?;
         document["program"] = sent.document();
         page += &sent.page();
+        let facts = facts::Facts {
+            robot,
+            cell: setup.cell(),
+            path,
+            place: &opened.place,
+            stock: request.as_ref().and_then(CuttingRequest::stock),
+            feed: program.feed(),
+            files: sent.names(),
+        };
+        let [of_json, of_html] = sent.job;
+        files.add(of_html, job::html(&facts.job(&solved)));
         sent.files.into_iter().for_each(|(path, text)| files.add(path, text));
-        files.add(sent.job, json::document(&document));
+        files.add(of_json, json::document(&document));
     }
     if let Some(path) = &arguments.json {
         files.add(path, json::document(&document));

@@ -28,7 +28,7 @@ const MOST_SHOWN: usize = 10;
 #[derive(clap::Args)]
 #[command(next_help_heading = "The path as a robot program")]
 pub struct RobotProgramArguments {
-    /// Write a program of the robot's controller, and job.json, into the folder `--out`
+    /// Write a program of the robot's controller, job.json and job.html into the folder `--out`
     #[arg(long, value_name = "LANGUAGE", value_enum, requires = "out")]
     program: Option<RobotLanguage>,
     /// The program's name; that of the path's file where left out
@@ -77,8 +77,8 @@ pub struct ProgramRequest {
 pub struct Sending {
     /// Its files, in the folder.
     pub files: Vec<(PathBuf, String)>,
-    /// Where job.json goes.
-    pub job: PathBuf,
+    /// Where job.json and job.html go.
+    pub job: [PathBuf; 2],
     composed: Composed,
     language: Language,
     stops: bool,
@@ -131,7 +131,7 @@ impl RobotProgramArguments {
 
 impl ProgramRequest {
     /// The files that will come of it for certain.
-    pub fn foreseen(&self) -> [PathBuf; 2] {
+    pub fn foreseen(&self) -> [PathBuf; 3] {
         let end = match self.order.language {
             Language::Krl => "src",
             Language::Rapid => "mod",
@@ -141,11 +141,17 @@ impl ProgramRequest {
             Language::Ls => self.order.name.to_ascii_uppercase(),
             _ => self.order.name.clone(),
         };
-        [self.folder.join(format!("{name}.{end}")), self.job()]
+        let [document, page] = self.job();
+        [self.folder.join(format!("{name}.{end}")), document, page]
     }
 
-    fn job(&self) -> PathBuf {
-        self.folder.join("job.json")
+    fn job(&self) -> [PathBuf; 2] {
+        ["job.json", "job.html"].map(|name| self.folder.join(name))
+    }
+
+    /// The feed where the path has none (m/s).
+    pub fn feed(&self) -> Option<f64> {
+        self.order.feed
     }
 
     /// The program that sends a robot through points; the path's frame stands at `place` in the base frame.
@@ -215,12 +221,17 @@ impl Sending {
         page
     }
 
+    /// The names of its files.
+    pub fn names(&self) -> Vec<String> {
+        let name = |path: &PathBuf| path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        self.files.iter().map(|(path, _)| name(path)).collect()
+    }
+
     /// The same for programs.
     pub fn document(&self) -> Value {
-        let name = |path: &PathBuf| path.file_name().unwrap_or_default().to_string_lossy().into_owned();
         json!({
             "language": self.language.word(),
-            "files": self.files.iter().map(|(path, _)| name(path)).collect::<Vec<_>>(),
+            "files": self.names(),
             "targets": if self.composed.targets == Targets::Poses { "poses" } else { "joints" },
             "why": self.composed.why,
             "nominal": self.nominal,

@@ -112,6 +112,11 @@ impl StockRequest {
         self.stock.is_some()
     }
 
+    /// The stock.
+    pub fn stock(&self) -> Option<&Stock> {
+        self.stock.as_ref()
+    }
+
     /// What is cut where with a cut of that name; `None` without a stock.
     pub fn survey<const N: usize>(
         &self,
@@ -234,13 +239,22 @@ impl Engaged {
         page + "\n"
     }
 
-    /// The cells of `ae [mm],ap [mm]` at a point; 0 in the air, empty where nobody knows.
-    pub fn cells(&self, index: usize) -> String {
+    /// Width and depth (m) of what is cut on the way to a point; 0 in the air, `None` where nobody knows.
+    pub fn section(&self, index: usize) -> Option<[f64; 2]> {
         let segment = &self.survey.segments[index];
         match (segment.width_and_depth(), &segment.met) {
-            (Some([width, depth]), _) => format!("{},{}", cell(width * 1e3, 4), cell(depth * 1e3, 4)),
-            (None, Met::Tilted | Met::Plunge) => ",".to_owned(),
-            (None, _) => "0,0".to_owned(),
+            (Some(section), _) => Some(section),
+            (None, Met::Tilted | Met::Plunge) => None,
+            (None, _) => Some([0.0; 2]),
+        }
+    }
+
+    /// The cells of `ae [mm],ap [mm]` at a point; 0 in the air, empty where nobody knows.
+    pub fn cells(&self, index: usize) -> String {
+        match self.section(index) {
+            Some([0.0, 0.0]) => "0,0".to_owned(),
+            Some(section) => section.map(|side| cell(side * 1e3, 4)).join(","),
+            None => ",".to_owned(),
         }
     }
 

@@ -22,6 +22,9 @@ use html::{escape, text};
 /// How pages look.
 pub const STYLE: &str = include_str!("style.css");
 
+/// The colours of what a path is coloured by.
+pub const SHADES: &str = include_str!("shades.css");
+
 /// The page. Figures and tables say µm where other texts say um.
 pub fn html(report: &Report) -> String {
     let body = [

@@ -5,6 +5,7 @@ use serde_json::Value;
 
 use super::content::{Kind, Pose, Scene, Values};
 use super::picture;
+use crate::report::SHADES;
 use crate::report::html::{Table, data, element, escape, number, page, text, words};
 use crate::text::{decimals, significant};
 
@@ -29,7 +30,7 @@ pub fn html(robot: &Description, scene: &Scene, document: &Value) -> String {
         data("data", document),
     );
     let title = format!("{}: compliance in 3-D", robot.name);
-    page(&title, STYLE, &body, &format!("\"use strict\";\n{}", SCRIPTS.concat()))
+    page(&title, &[SHADES, STYLE].concat(), &body, &format!("\"use strict\";\n{}", SCRIPTS.concat()))
 }
 
 fn heading(robot: &Description, scene: &Scene) -> String {

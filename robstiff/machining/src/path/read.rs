@@ -131,8 +131,8 @@ impl ToolPath {
         Ok(Self { file: file.to_owned(), points, warnings, is_program, tool, lines: Lines::new(text.to_owned()) })
     }
 
-    /// A line of the file (from 1).
-    pub(super) fn line(&self, line: usize) -> &str {
+    /// A line of the file (from 1); empty where there is no such line.
+    pub fn line(&self, line: usize) -> &str {
         self.lines.line(line)
     }
 }
