@@ -227,7 +227,7 @@ fn document(predicted: &Predicted, robot: &Description, cut: &Cut, q: &[f64]) ->
         "translational_compliance": json::matrix(predicted.modes.compliance()),
         "mass": predicted.mass.as_ref().map(json::matrix),
         "frequencies_Hz": json::numbers(predicted.modes.frequencies().iter().map(|w| w / std::f64::consts::TAU)),
-        "damping": predicted.modes.damping(),
+        "damping": predicted.modes.damping().first().copied().unwrap_or(0.0),
         "tool_axis": json::numbers(predicted.axis.iter().copied()),
         "speed_rad_per_s": cut.speed.map(json::number),
         "teeth_Hz": cut.tooth_period().map(|period| json::number(period.recip())),

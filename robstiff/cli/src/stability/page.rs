@@ -38,7 +38,7 @@ pub fn page(predicted: &Predicted, robot: &Description, cut: &Cut, measured: boo
         None => ", by the masses of the links".to_owned(),
     };
     page += &format!("modes at {} Hz{mass}", frequencies.join(", "));
-    let damping = predicted.modes.damping();
+    let damping = predicted.modes.damping().first().copied().unwrap_or(0.0);
     page += &match damping > 0.0 {
         true => format!(", damping ratio {}\n", significant(damping, 3)),
         false => ", no damping\n".to_owned(),
