@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use robstiff_identify::{campaign, simulate};
-use robstiff_machining::{cell, map, milling};
+use robstiff_machining::{cell, map, milling, stability};
 use robstiff_robots::schema;
 
 use crate::failure::Failure;
@@ -31,6 +31,8 @@ enum Kind {
     Scenario,
     /// A cut: the force of a tool
     Cut,
+    /// Measured modes of the tool on the arm
+    Modes,
     /// What to map
     Map,
     /// A cell: robot, spindle, tools and workpiece
@@ -44,6 +46,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         Kind::Campaign => campaign::schema::schema(),
         Kind::Scenario => simulate::schema::schema(),
         Kind::Cut => milling::schema::schema(),
+        Kind::Modes => stability::schema::schema(),
         Kind::Map => map::schema::schema(),
         Kind::Cell => cell::schema::schema(),
     });

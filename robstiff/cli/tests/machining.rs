@@ -357,6 +357,61 @@ fn a_depth_needs_a_spindle_speed() {
     assert!(said.contains("`9000` has no unit; write e.g. `9000 rpm`"), "{said}");
 }
 
+/// A table of the modes of one mass has its depths, also of an arm that yields nowhere itself.
+#[test]
+fn measured_modes_stand_in_place_of_the_mass() {
+    let folder = folder("machining-modes");
+    let (one, _) = damped(&folder, &[]);
+    let numbers = |value: &serde_json::Value| -> Vec<f64> {
+        value.as_array().unwrap().iter().map(|entry| entry.as_f64().unwrap()).collect()
+    };
+    // Of one mass alike in all directions, the modes are along the principal directions.
+    let compliance: Vec<f64> = one["translational_compliance"].as_array().unwrap().iter().flat_map(numbers).collect();
+    let principal = robstiff::nalgebra::Matrix3::from_row_slice(&compliance).symmetric_eigen();
+    let mut order = [0, 1, 2];
+    order.sort_by(|&i, &j| principal.eigenvalues[j].total_cmp(&principal.eigenvalues[i]));
+    let hertz = numbers(&one["frequencies_Hz"]);
+    let mut text = "frame: base\nmodes:\n".to_owned();
+    for (mode, frequency) in order.into_iter().zip(&hertz) {
+        let (stiffness, along) = (principal.eigenvalues[mode].recip(), principal.eigenvectors.column(mode));
+        text += &format!(
+            "  - {{frequency: {frequency} Hz, damping: 0.02, stiffness: {stiffness} N/m, direction: [{}, {}, {}]}}\n",
+            along[0], along[1], along[2]
+        );
+    }
+    let [table, told] = ["modes.yaml", "modes.json"].map(|name| inside(&folder, name));
+    fs::write(&table, &text).unwrap();
+    let at = "0,-90 deg,90 deg,0,60 deg,0";
+    let cut = file("roughing.yaml");
+    let asked = ["stability", "kuka-kr270-r2700", &cut, "--at", at, "--modes", &table];
+    let page = succeed(&[&asked[..], &["--json", &told]].concat());
+    assert!(page.contains(" Hz, as measured, damping ratio 0.02\n"), "{page}");
+    let measured = json(&told);
+    for angle in [0.0, 90.0, 180.0] {
+        for key in ["limiting_depth_m", "at_any_speed_m", "without_delay_m"] {
+            let [found, expected] = [&measured, &one].map(|told| depth(told, angle, key).unwrap());
+            assert!((found / expected - 1.0).abs() < 1e-6, "{angle} {key}: {found} {expected}");
+        }
+    }
+    // Of the arm the pose alone is asked.
+    let rigid = rigid(&folder);
+    succeed(&["stability", &rigid, &cut, "--tool-axis", "z", "--modes", &table]);
+
+    fs::write(&table, text.replacen("damping: 0.02", "damping: 0.05", 1)).unwrap();
+    let page = succeed(&[&asked[..], &["--json", &told]].concat());
+    assert!(page.contains(", damping ratios 0.05, 0.02, 0.02\n"), "{page}");
+    let unlike = json(&told);
+    assert!(unlike["damping"].is_null() && numbers(&unlike["dampings"]) == [0.05, 0.02, 0.02], "{unlike}");
+
+    for other in [["--frequency", "15 Hz"], ["--damping", "0.02"]] {
+        let said = fail(2, &[&asked[..], &other].concat());
+        assert!(said.contains("--modes") && said.contains(other[0]), "{said}");
+    }
+    fs::write(&table, text.replacen("damping: 0.02", "damping: -0.02", 1)).unwrap();
+    let said = fail(1, &asked);
+    assert!(said.contains("modes.yaml:3:") && said.contains("above 0 and below 1"), "{said}");
+}
+
 /// Where nothing chatters up to the greatest depth there is no number, and no infinity.
 #[test]
 fn a_feed_without_a_limit_has_none() {

@@ -11,7 +11,7 @@ use robstiff_robots::document::Document;
 use robstiff_robots::schema::value_of;
 use serde_json::Value;
 
-const KINDS: [&str; 6] = ["robot", "campaign", "scenario", "cut", "map", "cell"];
+const KINDS: [&str; 7] = ["robot", "campaign", "scenario", "cut", "modes", "map", "cell"];
 
 fn validator(kind: &str) -> jsonschema::Validator {
     let schema: Value = serde_json::from_str(&succeed(&["schema", kind])).unwrap();
@@ -32,6 +32,7 @@ fn kind_of(file: &Value) -> Option<&'static str> {
         () if has("convention") => Some("robot"),
         () if has("seed") && has("poses") => Some("scenario"),
         () if has("depth") || has("measured") && has("speed") => Some("cut"),
+        () if has("modes") => Some("modes"),
         () if has("robot") && has("spindle") => Some("cell"),
         () if has("positions") || has("joints") => Some("map"),
         () => None,
@@ -94,6 +95,7 @@ fn what_is_wrong_in_shape_is_refused() {
     const CAMPAIGN: &str = "robot: rv130hsc\nobservations: loads.csv\nkind: displacement\n";
     const SCENARIO: &str = "seed: 1\nposes: {count: 40}\nforce: {bounds: [500 N, 1300 N]}\n";
     const CUT: &str = "tool: {diameter: 16 mm, teeth: 3}\nmilling: slot\nmaterial: al7075-t6\nfeed: 0.1 mm/tooth\n";
+    const MODES: &str = "frame: base\n";
     const MAP: &str = "force: 500 N\n";
     const CELL: &str = "robot: rv130hsc\nspindle: {axis: x}\n";
     let cases = [
@@ -116,6 +118,12 @@ fn what_is_wrong_in_shape_is_refused() {
             CUT,
             "depth: 2 mm\nkienzle: {kc11: 1990 N/mm2, mc: 0.26, radial: 0.3}",
             "depth: 2 mm\nkienzle: {kc11: 1990 N/mm2, mc: 0.26}",
+        ),
+        (
+            "modes",
+            MODES,
+            "modes: [{frequency: 15.2 Hz, damping: 0.03, stiffness: 0.8 N/um, direction: [1, 0, 0]}]",
+            "modes: [{frequency: 15.2 Hz, damping: 0.03, stiffness: 0.8, direction: [1, 0, 0]}]",
         ),
         ("map", MAP, "joints: [0, {from: 0 deg, to: 90 deg, count: 50}]", "joints: [0, {from: 0 deg, to: 90 deg}]"),
         (

@@ -12,7 +12,7 @@ use robstiff::analysis::translational_compliance;
 use robstiff::elements::{compliance_under, contributions, contributions_under};
 use robstiff::nalgebra::{Matrix3, SVector, Unit, Vector3, Vector6};
 use robstiff_machining::milling::{Cut, Forces};
-use robstiff_machining::stability::{FeedLimit, Modes, mass_of_first_mode, over_feeds};
+use robstiff_machining::stability::{FeedLimit, Modes, ModesFile, mass_of_first_mode, over_feeds};
 use robstiff_robots::Description;
 use robstiff_robots::quantity::{self, Dimension};
 use serde_json::{Value, json};
@@ -43,6 +43,9 @@ pub struct Arguments {
     /// The frequency of the arm's first mode as measured in this pose, e.g. "15 Hz"; by the links' masses where left out
     #[arg(long, value_name = "FREQUENCY", allow_hyphen_values = true, value_parser = positive(Dimension::Frequency))]
     frequency: Option<f64>,
+    /// The modes of the tool on the arm as measured in this pose: frequency, damping, stiffness and direction of each
+    #[arg(long, value_name = "MODES.yaml", conflicts_with_all = ["frequency", "damping"])]
+    modes: Option<PathBuf>,
     /// The damping ratio of the arm's modes; without it, the arm is taken to have no damping
     #[arg(long, value_name = "RATIO", default_value_t = 0.0, allow_hyphen_values = true, value_parser = ratio)]
     damping: f64,
@@ -79,12 +82,24 @@ fn ratio(text: &str) -> Result<f64, String> {
 /// A compliance that changes by less is the same.
 const ROUNDING: f64 = 1e-9;
 
+/// Where the modes come from.
+#[derive(Clone, Copy)]
+pub enum Source {
+    /// A table of measured modes.
+    Table,
+    /// The measured frequency of the first mode, which gives one mass.
+    Frequency,
+    /// The masses of the links.
+    Links,
+}
+
 /// What is predicted of an arm in a cut.
 pub struct Predicted {
     /// The mass at the TCP in the base frame (kg), where it has one in all directions.
     mass: Option<Matrix3<f64>>,
     /// Of the arm without load, where a hammer finds them.
     modes: Modes,
+    source: Source,
     /// Whether the arm under the cut is another: backlash or hardening.
     stiffens: bool,
     /// From the spindle to the tip, in the base frame.
@@ -100,7 +115,11 @@ pub struct Predicted {
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let (robot, behind) = (arguments.robot.as_ref(), arguments.cut.as_ref());
     let (mut setup, given) = arguments.cell.setup(robot, behind, "robstiff stability CUT.yaml")?;
-    input::refuse_if_rigid(&setup.robot, "`robstiff stability`")?;
+    let measured = arguments.modes.as_ref().map(ModesFile::read).transpose()?;
+    // What was measured needs no compliance of the description.
+    if measured.is_none() {
+        input::refuse_if_rigid(&setup.robot, "`robstiff stability`")?;
+    }
     let Some(cut_path) = setup.cut(given.as_ref()) else {
         return Err(Failure::Usage("no CUT.yaml is given, and no cell that names one under `cut:`".to_owned()));
     };
@@ -131,8 +150,16 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let mut files = Files::default();
     setup.protect(&mut files);
     forces::protect(&mut files, &cut_path, &file);
+    arguments.modes.iter().for_each(|path| files.protect(path));
     files.foresee(arguments.out.iter().chain(&arguments.json))?;
-    let predicted = with_arm!(robot, |arm| predict(&arm, &setup, cut, ([speed, period], axis), &q, arguments))?;
+    let predicted = with_arm!(robot, |arm| predict(
+        &arm,
+        &setup,
+        cut,
+        ([speed, period], axis),
+        (&q[..], measured.as_ref()),
+        arguments
+    ))?;
     if let Some(path) = &arguments.out {
         files.add(path, picture::svg(&predicted, cut));
     }
@@ -140,7 +167,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         files.add(path, json::document(&document(&predicted, robot, cut, &q)));
     }
     let said = files.write()?;
-    output::print(page::page(&predicted, robot, cut, arguments.frequency.is_some()) + &said)
+    output::print(page::page(&predicted, robot, cut) + &said)
 }
 
 fn predict<const N: usize>(
@@ -148,12 +175,13 @@ fn predict<const N: usize>(
     setup: &Setup,
     cut: &Cut,
     ([speed, period], axis): ([f64; 2], Unit<Vector3<f64>>),
-    q: &[f64],
+    (q, measured): (&[f64], Option<&ModesFile>),
     arguments: &Arguments,
 ) -> Result<Predicted, Failure> {
     let (robot, q) = (&setup.robot, SVector::from_column_slice(q));
+    let tool: Matrix3<f64> = arm.transform(&q).fixed_view::<3, 3>(0, 0).into_owned();
     let compliance = translational_compliance(&arm.compliance(&q));
-    if compliance.amax() == 0.0 {
+    if measured.is_none() && compliance.amax() == 0.0 {
         return Err(Failure::new(format!("{} does not yield in this pose", robot.name)));
     }
     let not_finite = || Failure::new("the compliance in this pose is not finite");
@@ -161,23 +189,38 @@ fn predict<const N: usize>(
         Some(frequency) => Some(mass_of_first_mode(&compliance, frequency).ok_or_else(not_finite)?),
         None => None,
     };
-    let modes = match &first {
-        Some(mass) => Modes::new(&compliance, mass, arguments.damping).ok_or_else(not_finite)?,
-        None => Modes::of_links(arm, &robot.links, &q, contributions(arm, &q), arguments.damping).map_err(|error| {
-            Failure::new(format!("{error}; measure the first mode at the tool and give it: --frequency \"15 Hz\""))
-        })?,
+    let (modes, source) = match (measured, &first) {
+        (Some(table), _) => {
+            let beyond =
+                || Failure::new("the measured modes are so stiff or so soft that they cannot be computed with");
+            (table.in_base(&tool).ok_or_else(beyond)?, Source::Table)
+        }
+        (None, Some(mass)) => {
+            (Modes::new(&compliance, mass, arguments.damping).ok_or_else(not_finite)?, Source::Frequency)
+        }
+        (None, None) => {
+            let parts = contributions(arm, &q);
+            let of_links = Modes::of_links(arm, &robot.links, &q, parts, arguments.damping).map_err(|error| {
+                Failure::new(format!(
+                    "{error}; measure the first mode at the tool and give it: --frequency \"15 Hz\", or more of \
+                     them: --modes MODES.yaml"
+                ))
+            })?;
+            (of_links, Source::Links)
+        }
     };
-    let axis = arm.transform(&q).fixed_view::<3, 3>(0, 0) * axis.as_ref();
+    let axis = tool * axis.as_ref();
     let greatest = arguments.greatest.unwrap_or(10.0 * cut.depth);
     // Masses stay what they are when the cut takes up the backlash.
     let under = |force: &Vector3<f64>| {
         let wrench = Vector6::new(force.x, force.y, force.z, 0.0, 0.0, 0.0);
-        match &first {
-            Some(mass) => {
+        match (source, &first) {
+            (Source::Table, _) => Some(modes.clone()),
+            (_, Some(mass)) => {
                 let compliance = translational_compliance(&compliance_under(arm, &q, &wrench));
                 Modes::new(&compliance, mass, arguments.damping)
             }
-            None => {
+            (_, None) => {
                 let parts = contributions_under(arm, &q, &wrench);
                 Modes::of_links(arm, &robot.links, &q, parts, arguments.damping).ok()
             }
@@ -185,17 +228,24 @@ fn predict<const N: usize>(
     };
     let feeds = over_feeds(under, cut, &axis, arguments.feeds.into(), period, greatest)
         .ok_or_else(|| Failure::new("the compliance under the cut is not finite"))?;
-    let change = |feed: &FeedLimit| (feed.modes.compliance() - compliance).amax() / compliance.amax();
+    let unloaded = modes.compliance();
+    let change = |feed: &FeedLimit| (feed.modes.compliance() - unloaded).amax() / unloaded.amax();
     let stiffens = feeds.iter().any(|feed| change(feed) > ROUNDING);
     let mass = first.or_else(|| modes.mass());
     let of_spindle = setup.cell().and_then(|cell| cell.spindle.as_ref()?.speeds);
     let lobes = lobes::over_speeds(&feeds, cut, lobes::speeds(arguments.speeds.or(of_spindle), speed));
-    Ok(Predicted { mass, modes, stiffens, axis, greatest, feeds, lobes })
+    Ok(Predicted { mass, modes, source, stiffens, axis, greatest, feeds, lobes })
 }
 
 /// The stiffness of the softest direction (N/m); `None` where all are rigid.
 fn softest(modes: &Modes) -> Option<f64> {
     Some(modes.compliance().symmetric_eigenvalues().max()).filter(|most| *most > 0.0).map(f64::recip)
+}
+
+/// The damping ratio of all modes, where it is the same.
+fn alike(modes: &Modes) -> Option<f64> {
+    let (first, others) = modes.damping().split_first()?;
+    others.iter().all(|damping| damping == first).then_some(*first)
 }
 
 /// Everything in SI units; what does not exist is null.
@@ -227,7 +277,9 @@ fn document(predicted: &Predicted, robot: &Description, cut: &Cut, q: &[f64]) ->
         "translational_compliance": json::matrix(predicted.modes.compliance()),
         "mass": predicted.mass.as_ref().map(json::matrix),
         "frequencies_Hz": json::numbers(predicted.modes.frequencies().iter().map(|w| w / std::f64::consts::TAU)),
-        "damping": predicted.modes.damping(),
+        // Of all modes, where it is the same.
+        "damping": alike(&predicted.modes),
+        "dampings": json::numbers(predicted.modes.damping().iter().copied()),
         "tool_axis": json::numbers(predicted.axis.iter().copied()),
         "speed_rad_per_s": cut.speed.map(json::number),
         "teeth_Hz": cut.tooth_period().map(|period| json::number(period.recip())),

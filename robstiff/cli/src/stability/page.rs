@@ -8,7 +8,7 @@ use robstiff_machining::milling::Cut;
 use robstiff_machining::stability::{Limits, best};
 use robstiff_robots::Description;
 
-use super::{Predicted, softest};
+use super::{Predicted, Source, alike, softest};
 use crate::text::{Table, decimals, significant};
 
 /// What a prediction says, and what it does not.
@@ -20,32 +20,39 @@ const ROWS: usize = 12;
 /// How many of speeds, so that the cut's is among them.
 const SPEED_ROWS: usize = 10;
 
-pub fn page(predicted: &Predicted, robot: &Description, cut: &Cut, measured: bool) -> String {
+pub fn page(predicted: &Predicted, robot: &Description, cut: &Cut) -> String {
     let state = if predicted.stiffens { ", without load" } else { "" };
     let mut page = format!("{}: {COVERS}\n\nThe arm at its tool{state}\n", robot.name);
     page += &directions(predicted);
     let frequencies: Vec<String> =
         predicted.modes.frequencies().iter().map(|frequency| decimals(frequency / TAU, 1)).collect();
-    let mass = match predicted.mass.map(|mass| SymmetricEigen::new(mass).eigenvalues) {
-        Some(mass) if measured => {
+    let mass = predicted.mass.map(|mass| SymmetricEigen::new(mass).eigenvalues);
+    let source = match (predicted.source, mass) {
+        (Source::Table, _) => ", as measured".to_owned(),
+        (Source::Frequency, Some(mass)) => {
             format!(", mass at the tool {} kg, by the frequency of the first", significant(mass.max(), 3))
         }
-        Some(mass) => format!(
+        (Source::Links, Some(mass)) => format!(
             ", by the masses of the links; mass at the tool {} to {} kg",
             significant(mass.min(), 3),
             significant(mass.max(), 3)
         ),
-        None => ", by the masses of the links".to_owned(),
+        (_, None) => ", by the masses of the links".to_owned(),
     };
-    page += &format!("modes at {} Hz{mass}", frequencies.join(", "));
-    let damping = predicted.modes.damping();
-    page += &match damping > 0.0 {
-        true => format!(", damping ratio {}\n", significant(damping, 3)),
-        false => ", no damping\n".to_owned(),
+    page += &format!("modes at {} Hz{source}", frequencies.join(", "));
+    let dampings = predicted.modes.damping();
+    let undamped = dampings.iter().all(|damping| *damping == 0.0);
+    page += &match alike(&predicted.modes) {
+        _ if undamped => ", no damping\n".to_owned(),
+        Some(damping) => format!(", damping ratio {}\n", significant(damping, 3)),
+        None => {
+            let each: Vec<String> = dampings.iter().map(|damping| significant(*damping, 3)).collect();
+            format!(", damping ratios {}\n", each.join(", "))
+        }
     };
     let (speed, teeth) = (cut.speed.unwrap_or_default(), cut.tooth_period().unwrap_or_default().recip());
     page += &format!("teeth pass at {} Hz, {} rpm\n", significant(teeth, 4), rpm(speed));
-    if damping == 0.0 {
+    if undamped {
         page += "without damping a movement that the cut feeds at all grows at any depth: give the measured ratio, e.g. \
                  --damping 0.02\n";
     }

@@ -78,7 +78,7 @@ fn drawn_cut(draws: &mut Draws) -> Cut {
 
 /// How the force on the tool changes with the chip in each of so many parts of the time between
 /// two teeth, per depth: every tooth with its angle, exact within the part.
-fn tooth_by_tooth(cut: &Cut, frame: &CutFrame, parts: usize) -> Vec<Matrix3<f64>> {
+pub(super) fn tooth_by_tooth(cut: &Cut, frame: &CutFrame, parts: usize) -> Vec<Matrix3<f64>> {
     let Coefficients { ktc, krc, kac, .. } = cut.coefficients;
     let kac = kac.copysign(cut.mill.helix);
     let pitch = TAU / cut.mill.teeth as f64;
@@ -175,7 +175,7 @@ fn growing(arm: &Arm, process: &Matrix3<f64>, period: f64) -> usize {
             break;
         }
         if one.abs().max(other.abs()) < 0.03 {
-            step = (2.0 * step).min(longest).min(0.3 * arm.modes.damping().min(0.1) * frequency.max(0.02 * first));
+            step = (2.0 * step).min(longest).min(0.3 * arm.modes.damping()[0].min(0.1) * frequency.max(0.02 * first));
         }
     }
     let count = -(turned / PI).round();
@@ -278,7 +278,7 @@ fn growth_of_modes(modes: &Modes, process: &Matrix3<f64>, parts: usize, period: 
     let count = modes.frequencies().len();
     let shapes: Vec<Vector3<f64>> = modes.shapes().column_iter().map(|shape| shape.fixed_rows::<3>(0).into()).collect();
     let stiff = |mode: usize| modes.frequencies()[mode].powi(2);
-    let damps = |mode: usize| 2.0 * modes.damping() * modes.frequencies()[mode];
+    let damps = |mode: usize| 2.0 * modes.damping()[mode] * modes.frequencies()[mode];
     let weight = |mode: usize| 2.0 / step + damps(mode) + 0.5 * step * stiff(mode);
     let mut at_once = modes.massless;
     for (mode, shape) in shapes.iter().enumerate() {

@@ -58,7 +58,7 @@ impl Modes {
     /// in what is found below it.
     pub fn limits(&self, process: &Matrix3<f64>, greatest: f64) -> Limits {
         let is_stable = |depth: f64| self.is_stable(&(process * depth));
-        let bounds = match (self.frequencies().len(), self.damping() == 0.0 && self.massless == Matrix3::zeros()) {
+        let bounds = match (self.frequencies().len(), self.is_undamped() && self.massless == Matrix3::zeros()) {
             (0..=2, true) => self.seen(process).map_or_else(Vec::new, |seen| self.roots(&seen)),
             _ => self.searched(process, greatest),
         };
@@ -127,14 +127,16 @@ impl Modes {
     /// A depth (m) below which no movement grows. Eigenvalues move by no more than the change
     /// of a symmetric matrix (Bauer and Fike): two that are real do not meet before that is half
     /// of what keeps them apart, none gets to zero before it is the least. With damping a force
-    /// must bear what the dampers do, at least `2 zeta sqrt(1 - zeta^2)` of the least.
+    /// must bear what the damper of a mode does, at least `2 zeta sqrt(1 - zeta^2)` of its square.
     fn nothing_below(&self, process: &Matrix3<f64>, greatest: f64) -> f64 {
         let squares: Vec<f64> = self.frequencies().iter().map(|frequency| frequency * frequency).collect();
         let least = squares.first().copied().unwrap_or(0.0);
-        let zeta = self.damping();
-        let apart = match zeta > 0.0 {
-            true => least * if zeta < 0.5 { 2.0 * zeta * (1.0 - zeta * zeta).sqrt() } else { 0.75 },
-            false => squares.windows(2).map(|pair| 0.5 * (pair[1] - pair[0])).fold(least, f64::min),
+        let damps = |(square, zeta): (&f64, &f64)| {
+            square * if *zeta < 0.5 { 2.0 * zeta * (1.0 - zeta * zeta).sqrt() } else { 0.75 }
+        };
+        let apart = match self.is_undamped() {
+            true => squares.windows(2).map(|pair| 0.5 * (pair[1] - pair[0])).fold(least, f64::min),
+            false => squares.iter().zip(self.damping()).map(damps).fold(f64::INFINITY, f64::min),
         };
         let shapes = self.shapes().norm_squared();
         let force = process.norm() * shapes;

@@ -168,7 +168,8 @@ fn stiff_modes_hide_no_pair_that_meets() {
         let modes = |frequencies: &[f64]| {
             let shapes = DMatrix::from_fn(3, frequencies.len(), |row, i| if row == i.min(2) { 0.1 } else { 0.0 });
             let (compliance, massless) = (Matrix3::identity(), Matrix3::zeros());
-            Modes { compliance, frequencies: frequencies.to_vec().into(), shapes, massless, damping: 0.0 }
+            let damping = DVector::zeros(frequencies.len());
+            Modes { compliance, frequencies: frequencies.to_vec().into(), shapes, massless, damping }
         };
         let pair = [100.0, 100.0 * (1.0 + apart)];
         let alone = modes(&pair).limits(&process, 0.02).limiting().unwrap();

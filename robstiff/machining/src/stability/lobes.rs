@@ -78,7 +78,7 @@ impl Lobes {
         let first = modes.frequencies().first().copied().unwrap_or(0.0);
         let mut lobes = Self { response, samples, first, greatest, end, least: end, is_zero: false };
         lobes.least = lobes.lowest();
-        lobes.is_zero = modes.damping() < VANISHING && lobes.least < end;
+        lobes.is_zero = modes.damping().iter().any(|damping| *damping < VANISHING) && lobes.least < end;
         Some(lobes)
     }
 

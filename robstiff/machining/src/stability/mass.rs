@@ -3,7 +3,7 @@
 use core::f64::consts::TAU;
 use core::fmt;
 
-use nalgebra::{DMatrix, Matrix3, Matrix3x6, Matrix6, SVector, SymmetricEigen, Vector3};
+use nalgebra::{DMatrix, DVector, Matrix3, Matrix3x6, Matrix6, SVector, SymmetricEigen, Vector3};
 use robstiff_robots::Link;
 
 use super::Modes;
@@ -124,6 +124,7 @@ impl Modes {
         if massless.amax() <= ROUNDING * at_tool.amax() {
             massless = Matrix3::zeros();
         }
+        let damping = DVector::from_element(kept.len(), damping);
         Ok(Self { compliance: at_tool, frequencies: frequencies.into(), shapes, massless, damping })
     }
 

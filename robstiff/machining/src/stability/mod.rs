@@ -23,7 +23,8 @@
 //! # What this covers and what not
 //! - The arm's elasticity at one pose, with one mass at the tool by the 3 x 3
 //!   translational block of its compliance ([`Modes::new`]), or with the links'
-//!   masses by all that yields ([`Modes::of_links`]): the TCP is free to turn.
+//!   masses by all that yields ([`Modes::of_links`]): the TCP is free to turn. Or as a modal
+//!   test finds them, each with its damping ([`Modes::measured`]).
 //!   Directions in which it does not yield at all are rigid and take no part. Backlash and hardening have the slope that
 //!   they have under the mean force of the cut, see [`over_feeds`] and
 //!   [`compliance_under`](robstiff::elements::compliance_under): movements that cross
@@ -38,6 +39,9 @@
 #[cfg(test)]
 mod delay_tests;
 mod feeds;
+mod file;
+#[cfg(test)]
+mod file_tests;
 mod limit;
 #[cfg(test)]
 mod links_tests;
@@ -45,14 +49,21 @@ mod lobes;
 #[cfg(test)]
 mod lobes_tests;
 mod mass;
+mod measured;
+#[cfg(test)]
+mod measured_tests;
 mod modes;
 mod response;
+#[cfg(feature = "schema")]
+pub mod schema;
 mod spectrum;
 #[cfg(test)]
 mod tests;
 
 pub use feeds::{FeedLimit, best, feeds_in_plane, over_feeds, process, rank_one};
+pub use file::{ModesFile, ModesFrame};
 pub use limit::Limits;
 pub use lobes::Lobes;
 pub use mass::{MassError, mass_of_first_mode};
+pub use measured::MeasuredMode;
 pub use modes::{Modes, has_complex_pair};

@@ -18,8 +18,8 @@ pub struct Modes {
     pub(super) shapes: DMatrix<f64>,
     /// What of the compliance no mode has (m/N): what it moves has no mass.
     pub(super) massless: Matrix3<f64>,
-    /// Damping ratio of every mode.
-    pub(super) damping: f64,
+    /// The damping ratio of each mode.
+    pub(super) damping: DVector<f64>,
 }
 
 impl Modes {
@@ -45,6 +45,7 @@ impl Modes {
         if count == 0 {
             // Where nothing moves there is nothing to solve.
             let (frequencies, shapes) = (DVector::zeros(0), DMatrix::zeros(3, 0));
+            let damping = DVector::zeros(0);
             return Some(Self { compliance, frequencies, shapes, massless: Matrix3::zeros(), damping });
         }
         let directions = DMatrix::from_fn(3, count, |row, i| eigenvectors[(row, soft[i])]);
@@ -62,6 +63,7 @@ impl Modes {
         let frequencies = DVector::from_fn(count, |i, _| eigenvalues[order[i]].max(0.0).sqrt());
         let shapes = to_tool * vectors;
         let finite = frequencies.iter().chain(shapes.iter()).all(|entry| entry.is_finite());
+        let damping = DVector::from_element(count, damping);
         finite.then_some(Self { compliance, frequencies, shapes, massless: Matrix3::zeros(), damping })
     }
 
@@ -75,9 +77,14 @@ impl Modes {
         self.frequencies.as_slice()
     }
 
-    /// The damping ratio of every mode.
-    pub fn damping(&self) -> f64 {
-        self.damping
+    /// The damping ratio of each mode.
+    pub fn damping(&self) -> &[f64] {
+        self.damping.as_slice()
+    }
+
+    /// Whether no mode is damped.
+    pub(super) fn is_undamped(&self) -> bool {
+        self.damping.iter().all(|damping| *damping == 0.0)
     }
 
     /// What a unit of each mode moves the tool by, 3 x modes (1/sqrt(kg)).
@@ -126,17 +133,17 @@ impl Modes {
             return Margin::LOST;
         }
         let stiffness = stiffness / scale;
-        if self.damping == 0.0 {
+        if self.is_undamped() {
             let Some(spectrum) = Spectrum::of(&stiffness) else { return Margin::LOST };
             let distances = [spectrum.discriminant(), stiffness.determinant()];
             return Margin { is_stable: spectrum.are_real && spectrum.least() > 0.0, distances };
         }
-        // x'' + 2 zeta Omega x' + A x = 0, with time in units of 1 / sqrt(scale).
+        // x'' + 2 zeta Omega x' + A x = 0, each mode with its zeta, with time in units of 1 / sqrt(scale).
         let mut state = DMatrix::zeros(2 * count, 2 * count);
         state.view_mut((0, count), (count, count)).fill_with_identity();
         state.view_mut((count, 0), (count, count)).copy_from(&-stiffness);
         for i in 0..count {
-            state[(count + i, count + i)] = -2.0 * self.damping * self.frequencies[i] / scale.sqrt();
+            state[(count + i, count + i)] = -2.0 * self.damping[i] * self.frequencies[i] / scale.sqrt();
         }
         let Some(spectrum) = Spectrum::of(&-state) else { return Margin::LOST };
         let dying = spectrum.least();

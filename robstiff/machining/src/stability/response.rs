@@ -25,11 +25,19 @@ const STEP: f64 = 1.5;
 /// eigenvalues are those of `G(i w) P` that are not zero.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Response {
-    /// The natural frequency of each mode (rad/s) and its part.
-    modes: Vec<(f64, Matrix2<f64>)>,
+    resonances: Vec<Resonance>,
     /// The part of what has no mass.
     massless: Matrix2<f64>,
+}
+
+/// A mode as the chip sees it.
+#[derive(Clone, Debug, PartialEq)]
+struct Resonance {
+    /// The natural frequency (rad/s).
+    natural: f64,
+    /// The damping ratio.
     damping: f64,
+    part: Matrix2<f64>,
 }
 
 /// The two eigenvalues at one frequency, `mean + half` and `mean - half`.
@@ -70,12 +78,14 @@ impl Response {
         let forces = Matrix3x2::from_columns(&[u.column(0) * sizes[0], u.column(1) * sizes[1]]);
         let across: Matrix2x3<f64> = v_t.fixed_rows::<2>(0).into_owned();
         let part = |shape: Vector3<f64>| (across * shape) * (forces.transpose() * shape).transpose();
-        let shapes = modes.shapes().column_iter().map(|shape| part(Vector3::new(shape[0], shape[1], shape[2])));
-        Some(Self {
-            modes: modes.frequencies().iter().copied().zip(shapes).collect(),
-            massless: across * modes.massless * forces,
-            damping: modes.damping().max(least_damping),
-        })
+        let parts = modes.shapes().column_iter().map(|shape| part(Vector3::new(shape[0], shape[1], shape[2])));
+        let each = modes.frequencies().iter().zip(modes.damping()).zip(parts);
+        let resonance = |((natural, damping), part): ((&f64, &f64), Matrix2<f64>)| Resonance {
+            natural: *natural,
+            damping: damping.max(least_damping),
+            part,
+        };
+        Some(Self { resonances: each.map(resonance).collect(), massless: across * modes.massless * forces })
     }
 
     /// The part of what has no mass, which is left at the highest frequencies.
@@ -85,16 +95,18 @@ impl Response {
 
     /// More than the size of the modes' part at a frequency above all of them, and at any higher.
     fn bound(&self, frequency: f64) -> f64 {
-        self.modes.iter().map(|(natural, part)| part.norm() / (frequency * frequency - natural * natural)).sum()
+        let size =
+            |Resonance { natural, part, .. }: &Resonance| part.norm() / (frequency * frequency - natural * natural);
+        self.resonances.iter().map(size).sum()
     }
 
     /// The eigenvalues at a frequency (rad/s), as the mean and half the difference.
     fn pair(&self, frequency: f64) -> (Complex<f64>, Complex<f64>) {
         let mut sum = self.massless.map(Complex::from);
-        for (natural, part) in &self.modes {
+        for Resonance { natural, damping, part } in &self.resonances {
             // Without the difference of squares, of which little is left near a resonance.
             let real = (natural - frequency) * (natural + frequency);
-            let factor = Complex::new(real, 2.0 * self.damping * natural * frequency).inv();
+            let factor = Complex::new(real, 2.0 * damping * natural * frequency).inv();
             sum += part.map(|entry| factor * entry);
         }
         let apart = (sum[(0, 0)] - sum[(1, 1)]) * 0.5;
@@ -141,12 +153,12 @@ impl Response {
     /// Frequencies at which nothing of a resonance is passed over: its top, and further and
     /// further away on both sides.
     fn frequencies(&self, floor: f64) -> Vec<f64> {
-        let highest = self.modes.iter().map(|(natural, _)| *natural).fold(0.0, f64::max);
+        let highest = self.resonances.iter().map(|resonance| resonance.natural).fold(0.0, f64::max);
         let enough = floor * if self.massless == Matrix2::zeros() { 0.5 } else { 1e-4 };
         let mut all = Vec::new();
-        for (natural, _) in &self.modes {
+        for Resonance { natural, damping, .. } in &self.resonances {
             all.push(*natural);
-            let mut away = 0.5 * self.damping.min(0.5) * natural;
+            let mut away = 0.5 * damping.min(0.5) * natural;
             while away < *natural {
                 all.extend([natural - away, natural + away]);
                 away *= 2.0;
