@@ -211,9 +211,8 @@ fn response(modes: &[[f64; 3]], frequency: f64) -> Complex<f64> {
     modes.iter().map(part).sum()
 }
 
-/// The limiting depth (m) and the phase between two waves, of both roots: equations 13 to 22 of
-/// Altintas and Budak, CIRP Annals 44/1 (1995) 357-362, as Altintas prints them in Manufacturing
-/// Automation (2nd ed. 2012), section 4.8.
+/// The limiting depth (m) and the phase between two waves, of both roots, by the equations of
+/// Altintas and Budak, CIRP Annals 44/1 (1995) 357-362.
 fn printed(engagement: Engagement, frequency: f64) -> [(f64, f64); 2] {
     let kr = RADIAL / TANGENTIAL;
     let factors = |phi: f64| {
