@@ -25,6 +25,11 @@ pub struct TooFast {
     pub points: usize,
 }
 
+/// Whether a speed is beyond what is possible, by more than rounding; both in one unit.
+pub fn is_too_fast(speed: f64, most: f64) -> bool {
+    speed > most * (1.0 + ROUNDING)
+}
+
 impl Cell {
     /// What a path asks of the spindle and the stock that they do not have; `path` is as its file gives
     /// it, in the work frame.
@@ -78,7 +83,7 @@ impl Cell {
             }
             for (index, &most) in self.joint_speeds.iter().enumerate().take(N) {
                 let speed = (point.q[index] - before.q[index]).abs() / time;
-                if speed <= most * (1.0 + ROUNDING) {
+                if !is_too_fast(speed, most) {
                     continue;
                 }
                 let fast = TooFast { joint: index + 1, line: point.line, speed, most, points: 1 };

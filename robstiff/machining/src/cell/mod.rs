@@ -19,5 +19,5 @@ pub mod schema;
 mod tests;
 
 pub use axis::axis_of;
-pub use doubts::TooFast;
+pub use doubts::{TooFast, is_too_fast};
 pub use parts::{Cell, Program, Spindle, Tool, Work};

@@ -8,6 +8,8 @@ mod tests;
 mod thin;
 mod track;
 
+use robstiff_machining::cell::is_too_fast;
+
 use crate::report::html::{self, Cell, Table, element, escape, number, text, words};
 use crate::report::{SHADES, STYLE};
 use crate::text::{decimals, fine_micrometres, micrometres, significant};
@@ -127,8 +129,7 @@ fn too_fast<'a>(job: &'a Job<'_>, travels: &'a [Travel]) -> impl Iterator<Item =
     let each = travels.iter().zip(&job.joints).enumerate();
     each.filter_map(|(j, (travel, joint))| {
         let ((i, speed), fastest) = (travel.speed?, joint.fastest?);
-        // As where the command warns of it.
-        (speed > fastest * (1.0 + 1e-6)).then_some((j + 1, i))
+        is_too_fast(speed, fastest).then_some((j + 1, i))
     })
 }
 
