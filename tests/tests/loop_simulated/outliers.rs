@@ -1,4 +1,4 @@
-//! What looks like wild rows, or like a slip, and is not for sure.
+//! What looks like outliers, or like a slip, and is not for sure.
 
 use nalgebra::{SVector, Vector6};
 use rand::{RngExt, SeedableRng};
@@ -68,7 +68,7 @@ fn traces(first: u64, run: impl Fn(Scenario) -> Simulated) -> Vec<(u64, Trace)> 
 }
 
 /// An arm that trembles where it hangs far out: in noise of the same size everywhere,
-/// nine of ten such campaigns would have wild rows or a slip.
+/// nine of ten such campaigns would have outliers or a slip.
 #[test]
 fn noise_that_differs_from_pose_to_pose() {
     let traces = traces(710, |scenario| noisier(scenario.run()));
@@ -114,14 +114,14 @@ fn noise_with_heavy_tails() {
 
 /// A reading that is off by far more is found in it, at most with the largest of the others.
 #[test]
-fn a_wild_reading_among_heavy_tails() {
+fn an_outlier_among_heavy_tails() {
     let traces = traces(730, |scenario| {
         let mut simulated = Scenario { tails: Some(3), ..scenario }.run();
         simulated.rows[77].displacement[1] += 3e-3;
         simulated
     });
-    assert_most("a wild reading among heavy tails", 5, &traces, |_, trace| {
-        let [wild] = &trace.effects[..] else { return false };
-        wild.lines.contains(&79) && wild.lines.len() <= 2
+    assert_most("an outlier among heavy tails", 5, &traces, |_, trace| {
+        let [outlier] = &trace.effects[..] else { return false };
+        outlier.lines.contains(&79) && outlier.lines.len() <= 2
     });
 }

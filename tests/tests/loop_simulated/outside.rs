@@ -25,8 +25,8 @@ fn a_drift() {
 }
 
 #[test]
-fn wild_rows() {
-    is_named("outliers@rig", go_wild);
+fn outliers() {
+    is_named("outliers@rig", put_off);
 }
 
 #[test]
@@ -187,7 +187,7 @@ fn drift(simulated: &mut Simulated) {
 }
 
 /// Three readings that have nothing to do with the others.
-fn go_wild(simulated: &mut Simulated) {
+fn put_off(simulated: &mut Simulated) {
     for row in [17, 133, 290] {
         add(&mut simulated.rows[row], Vector3::new(3e-4, -2e-4, 4e-4));
     }
