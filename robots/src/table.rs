@@ -6,13 +6,14 @@ mod form;
 mod header;
 mod problems;
 mod repeated;
+mod spreadsheet;
 
 use core::cell::RefCell;
 use std::collections::HashSet;
 use std::path::Path;
 
 use crate::quantity::{Dimension, QuantityError, finite, scale};
-use crate::text::{self, Lines, MOST_OF_TABLE};
+use crate::text::{self, Lines};
 use crate::words::count;
 use crate::{Diagnostics, ReadError};
 
@@ -41,9 +42,21 @@ pub struct Table<'t> {
 const MOST_COLUMNS: usize = 1000;
 
 /// The text of a table's file; a byte order mark, as spreadsheets write it, is no part
-/// of it.
+/// of it. Of a spreadsheet (`.xlsx`, with the feature `xlsx`) it is the only sheet that has cells, as CSV.
+///
+/// # Errors
+/// A file that cannot be read, or is no text; a spreadsheet with several sheets.
 pub fn text_of(path: &Path) -> Result<String, ReadError> {
-    let mut text = text::read(path, MOST_OF_TABLE)?;
+    text_of_sheet(path, None)
+}
+
+/// The same of a spreadsheet's sheet by its name.
+///
+/// # Errors
+/// A file that cannot be read, or is no text; a spreadsheet without such a sheet.
+pub fn text_of_sheet(path: &Path, sheet: Option<&str>) -> Result<String, ReadError> {
+    let bytes = spreadsheet::bytes_of(path, sheet)?;
+    let mut text = text::decoded(&path.display().to_string(), bytes).map_err(ReadError::Invalid)?;
     if text.starts_with('\u{feff}') {
         text.drain(..'\u{feff}'.len_utf8());
     }

@@ -14,11 +14,23 @@ use robstiff_robots::{Description, JointKind, ReadError, catalogue};
 use super::beyond::{told_angle, told_length};
 use super::renamed::{self, Renamed, renamed};
 use super::{Campaign, Data, Frame, Holdout, Noise, clamped, displacements, positions};
-use robstiff_robots::table::{Table, text_of};
+use robstiff_robots::table::{Table, text_of_sheet};
 
 /// The fields of a campaign file.
-pub const FIELDS: [&str; 11] =
-    ["name", "date", "operator", "robot", "observations", "kind", "columns", "wrench", "measured", "noise", "holdout"];
+pub const FIELDS: [&str; 12] = [
+    "name",
+    "date",
+    "operator",
+    "robot",
+    "observations",
+    "sheet",
+    "kind",
+    "columns",
+    "wrench",
+    "measured",
+    "noise",
+    "holdout",
+];
 
 /// Of those, the ones that are about poses and the tool: clamped axes have neither.
 const OF_POSES: [&str; 3] = ["wrench", "measured", "holdout"];
@@ -42,6 +54,8 @@ struct Plan {
     operator: String,
     robot: String,
     observations: String,
+    /// The sheet of a spreadsheet.
+    sheet: Option<String>,
     kind: Kind,
     columns: Vec<Renamed>,
     wrench: (Frame, [f64; 3]),
@@ -71,7 +85,8 @@ impl Campaign {
 
         let (robot, robot_path) = catalogue::read(folder, Path::new(&plan.robot))?;
         let observations_path = folder.join(&plan.observations);
-        let (table_name, text) = (observations_path.display().to_string(), text_of(&observations_path)?);
+        let (table_name, text) =
+            (observations_path.display().to_string(), text_of_sheet(&observations_path, plan.sheet.as_deref())?);
         let mut table = Table::parse(&table_name, &text).map_err(ReadError::Invalid)?;
         renamed::take(&mut table, &plan.columns, (&file, &said)).map_err(ReadError::Invalid)?;
         table.take_joints(robot.joints.len());
@@ -135,6 +150,7 @@ fn plan(document: &Document, folder: &Path) -> Option<Plan> {
     let [name, date, operator] = ["name", "date", "operator"].map(text);
     let robot = file(&map, "robot", "robot: robot.yaml", folder);
     let observations = file(&map, "observations", "observations: loads.csv", folder);
+    let sheet = map.get("sheet").map(|name| name.text().map(ToOwned::to_owned));
     let kind = map.require("kind", "kind: displacement").and_then(|node| node.choice(&kinds));
     let columns = renamed(&map);
     let wrench = place(&map, "wrench");
@@ -149,6 +165,7 @@ fn plan(document: &Document, folder: &Path) -> Option<Plan> {
         operator: operator?,
         robot: robot?,
         observations: observations?,
+        sheet: sheet.map_or(Some(None), |name| name.map(Some))?,
         kind: kind?,
         columns: columns?,
         wrench: wrench?,

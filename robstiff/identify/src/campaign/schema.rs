@@ -14,6 +14,7 @@ pub fn schema() -> Value {
         "operator" => text("Who measured, for the report"),
         "robot" => text("The robot's description: its path from this file, or a robot of the catalogue"),
         "observations" => text("The table of what was measured: its path from this file"),
+        "sheet" => text("Of a spreadsheet with several sheets, the one with the table"),
         "kind" => word(
             &["displacement", "position", "clamped"],
             "What was read: displacements under loads, absolute positions, or axes loaded one by one",
