@@ -268,6 +268,11 @@ impl<'t> Table<'t> {
         }
     }
 
+    /// Whether a column's name differs from this one in capitals only, or has its unit in round brackets.
+    pub fn is_near(&self, name: &str) -> bool {
+        self.in_round_brackets(name).is_some() || self.header.iter().any(|header| header.key.eq_ignore_ascii_case(name))
+    }
+
     /// The index of a column. One whose unit is in round brackets is reported.
     pub fn position(&self, name: &str) -> Option<usize> {
         let index = self.header.iter().position(|header| header.key == name);
@@ -322,7 +327,7 @@ impl<'t> Table<'t> {
     }
 
     /// Reports it, once, where nothing is written in any row of some columns.
-    pub fn refuse_unfilled<const K: usize>(&self, columns: [Numbers; K], of: &str) -> Option<()> {
+    pub fn refuse_unfilled(&self, columns: &[Numbers], of: &str) -> Option<()> {
         let first = self.records.first()?;
         let unfilled = |record: &Record| columns.iter().all(|&column| self.is_empty(record, column));
         if self.records.iter().all(unfilled) {

@@ -8,6 +8,7 @@ use robstiff_robots::Description;
 use robstiff_robots::quantity::Dimension;
 
 use super::beyond::{DISPLACEMENT, FORCE, MOMENT, ROTATION, Usual, warn_of};
+use super::gauges::Gauges;
 use super::poses::{AtPose, Columns as PoseColumns, Poses, dimension_of};
 use super::{Displacements, Frame, Observation, alone, order, reference, revisited, times, unread};
 use robstiff::JointKind;
@@ -21,7 +22,7 @@ struct Columns {
     temperature: Option<Numbers>,
     force: [Numbers; 3],
     moment: [Option<Numbers>; 3],
-    displacement: [Numbers; 3],
+    gauges: Gauges,
     rotation: Option<[Numbers; 3]>,
     encoders: Option<Vec<Numbers>>,
     motors: Option<Vec<Numbers>>,
@@ -52,10 +53,10 @@ pub fn read(
     table: &Table<'_>,
     robot: &Description,
     (wrench_frame, wrench_at): (Frame, [f64; 3]),
-    (measured_frame, measured_at): (Frame, [f64; 3]),
+    ((measured_frame, measured_at), along): ((Frame, [f64; 3]), Option<[f64; 3]>),
 ) -> Option<Displacements> {
-    let columns = columns(table, robot)?;
-    table.refuse_unfilled(columns.displacement, "dx, dy, dz")?;
+    let columns = columns(table, robot, along)?;
+    table.refuse_unfilled(&columns.gauges.columns, &columns.gauges.names(table))?;
     let (mut poses, mut rows) = (Poses::default(), Vec::new());
     let mut complete = true;
     let order = order::of_reading(table, &columns.at, columns.time.as_deref());
@@ -96,7 +97,9 @@ pub fn read(
     if complete {
         leave_out_copies(table, &mut rows, &mut visits);
     }
-    let mut data = Displacements { wrench_frame, wrench_at, measured_frame, measured_at, poses, visits, rows };
+    let directions = columns.gauges.directions;
+    let mut data =
+        Displacements { wrench_frame, wrench_at, measured_frame, measured_at, directions, poses, visits, rows };
     data.count_from_the_beginning();
     complete.then_some(data)
 }
@@ -108,6 +111,10 @@ fn check_sizes(table: &Table<'_>, columns: &Columns, rows: &[Observation]) {
         rows.iter().filter_map(of).flatten().map(f64::abs).fold(0.0, f64::max)
     };
     let displaced = largest(|row| Some(row.displacement));
+    for (k, &column) in columns.gauges.columns.iter().enumerate() {
+        let read = |row: &Observation| columns.gauges.of(row.displacement).nth(k).unwrap_or_default();
+        DISPLACEMENT.warn_among(table, column, rows.iter().map(|row| (row.line, read(row))), displaced);
+    }
     let turned = largest(|row| row.rotation);
     for k in 0..3 {
         let force = rows.iter().map(|row| (row.line, row.wrench[k]));
@@ -115,8 +122,6 @@ fn check_sizes(table: &Table<'_>, columns: &Columns, rows: &[Observation]) {
         if let Some(column) = columns.moment[k] {
             MOMENT.warn(table, column, rows.iter().map(|row| (row.line, row.wrench[3 + k])));
         }
-        let displacement = rows.iter().map(|row| (row.line, row.displacement[k]));
-        DISPLACEMENT.warn_among(table, columns.displacement[k], displacement, displaced);
         if let Some(columns) = columns.rotation {
             let rotation = rows.iter().filter_map(|row| Some((row.line, row.rotation?[k])));
             ROTATION.warn_among(table, columns[k], rotation, turned);
@@ -131,7 +136,9 @@ fn check_sizes(table: &Table<'_>, columns: &Columns, rows: &[Observation]) {
 fn check_read(table: &Table<'_>, columns: &Columns, rows: &[Observation]) {
     let moved = unread::still(rows, |row| Some(row.displacement));
     let turned = unread::still(rows, |row| row.rotation);
-    let of_displacement = columns.displacement.into_iter().zip(moved);
+    // A single gauge that read nothing is asked about as no readings at all.
+    let of_displacement =
+        columns.gauges.columns.iter().copied().zip(moved).filter(|_| columns.gauges.columns.len() == 3);
     let of_rotation = columns.rotation.into_iter().flatten().zip(turned);
     for (column, _) in of_displacement.chain(of_rotation).filter(|(_, is_still)| *is_still) {
         let name = table.name_of(column);
@@ -172,7 +179,7 @@ fn check_under_load(
     warn_of(table, &what, rows.iter().filter(far).map(|row| row.line), &ask);
 }
 
-fn columns(table: &Table<'_>, robot: &Description) -> Option<Columns> {
+fn columns(table: &Table<'_>, robot: &Description, along: Option<[f64; 3]>) -> Option<Columns> {
     let all = |names: [&str; 3], dimension| {
         let found = names.map(|name| table.require(name, dimension));
         Some([found[0]?, found[1]?, found[2]?])
@@ -192,7 +199,7 @@ fn columns(table: &Table<'_>, robot: &Description) -> Option<Columns> {
     let temperature = table.numbers("temperature", Dimension::Temperature);
     let force = all(["Fx", "Fy", "Fz"], Dimension::Force);
     let moment = ["Mx", "My", "Mz"].map(|name| table.numbers(name, Dimension::Torque));
-    let displacement = all(["dx", "dy", "dz"], Dimension::Length);
+    let gauges = Gauges::find(table, along);
     let turns = ["rx", "ry", "rz"];
     let rotation = turns.iter().any(|name| table.position(name).is_some()).then(|| all(turns, Dimension::Angle));
     let (encoders, motors) = (under_load('j'), under_load('m'));
@@ -207,7 +214,7 @@ fn columns(table: &Table<'_>, robot: &Description) -> Option<Columns> {
         temperature,
         force: force?,
         moment,
-        displacement: displacement?,
+        gauges: gauges?,
         rotation,
         encoders: encoders.ok()?,
         motors: motors.ok()?,
@@ -223,7 +230,7 @@ fn observation(table: &Table<'_>, columns: &Columns, row: usize, record: &Record
     let q = columns.at.coordinates(table, record);
     let force = table.all(record, columns.force);
     let moment = columns.moment.map(|column| column.map_or(Some(0.0), |column| table.number(record, column)));
-    let displacement = table.all(record, columns.displacement);
+    let displacement = columns.gauges.read(table, record);
     let rotation = columns.rotation.map(|rotation| table.all(record, rotation));
     let under_load = |columns: &Option<Vec<Numbers>>| {
         let read = |columns: &Vec<Numbers>| -> Vec<Option<f64>> {

@@ -93,6 +93,7 @@ impl Plan {
             wrench_frame: Frame::Base,
             wrench_at: self.at[0],
             measured_frame: Frame::Base,
+            directions: super::AXES.to_vec(),
             measured_at: self.at[1],
             poses: (0..self.poses).map(|pose| format!("{pose}")).collect(),
             visits: (0..self.visits * self.poses).map(|visit| format!("{visit}")).collect(),

@@ -12,6 +12,7 @@ mod clock;
 #[cfg(test)]
 mod clock_tests;
 mod displacements;
+mod gauges;
 mod joints;
 #[cfg(test)]
 pub(crate) mod made;
@@ -145,6 +146,9 @@ pub struct Displacements {
     pub measured_frame: Frame,
     /// Where the displacement is measured, in the tool frame (m).
     pub measured_at: [f64; 3],
+    /// Along what it is measured, unit vectors in that frame: the axes, some of them, or the stem of a dial
+    /// gauge. What is not along one of them is zero in every row.
+    pub directions: Vec<[f64; 3]>,
     /// Pose ids in order of appearance; rows refer to them by index. Of several ids with the
     /// same joint coordinates there is the first.
     pub poses: Vec<String>,
@@ -154,6 +158,16 @@ pub struct Displacements {
     /// The rows, in the order in which they were read: the file's, or that of their times where a
     /// file has them in another.
     pub rows: Vec<Observation>,
+}
+
+/// The axes of a frame.
+pub const AXES: [[f64; 3]; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+
+impl Displacements {
+    /// Whether all three components of a displacement are measured.
+    pub fn is_whole(&self) -> bool {
+        self.directions.len() == AXES.len()
+    }
 }
 
 /// One row of kind `displacement`, as the file gives it, in SI units.

@@ -42,7 +42,7 @@ impl AtPose for PositionRow {
 /// Reads the rows; `None` with the problems reported to the table.
 pub fn read(table: &Table<'_>, robot: &Description, payload_at: [f64; 3], measured_at: [f64; 3]) -> Option<Positions> {
     let columns = columns(table, robot)?;
-    table.refuse_unfilled(columns.position, "px, py, pz")?;
+    table.refuse_unfilled(&columns.position, "px, py, pz")?;
     let (mut poses, mut rows) = (Poses::default(), Vec::new());
     let mut complete = true;
     for number in order::of_reading(table, &columns.at, columns.time.as_deref()) {

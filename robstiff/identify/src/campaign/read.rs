@@ -37,7 +37,11 @@ const OF_POSES: [&str; 3] = ["wrench", "measured", "holdout"];
 
 /// What they say of frames and rotations: a weight pulls downwards, a tracker reads
 /// points in a frame of its own. That the frame is the base's goes without saying.
-const OF_DISPLACEMENTS: [(&str, &str); 3] = [("wrench", "frame"), ("measured", "frame"), ("noise", "rotation")];
+const OF_DISPLACEMENTS: [(&str, &str); 4] =
+    [("wrench", "frame"), ("measured", "frame"), ("measured", "along"), ("noise", "rotation")];
+
+/// Where displacements are read, in which frame, and of a single gauge along which direction.
+type Measured = ((Frame, [f64; 3]), Option<[f64; 3]>);
 
 /// What the observations are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -59,7 +63,7 @@ struct Plan {
     kind: Kind,
     columns: Vec<Renamed>,
     wrench: (Frame, [f64; 3]),
-    measured: (Frame, [f64; 3]),
+    measured: Measured,
     noise: Noise,
     holdout: Option<Holdout>,
     /// The fields that are not used, with their lines.
@@ -95,7 +99,7 @@ impl Campaign {
                 displacements::read(&table, &robot, plan.wrench, plan.measured).map(Data::Displacement)
             }
             Kind::Clamped => clamped::read(&table, &robot).map(Data::Clamped),
-            Kind::Position => positions::read(&table, &robot, plan.wrench.1, plan.measured.1).map(Data::Position),
+            Kind::Position => positions::read(&table, &robot, plan.wrench.1, plan.measured.0.1).map(Data::Position),
         };
         let (data, of_table) = table.finish(data).map_err(ReadError::Invalid)?;
         let unused = plan.unused.iter().map(|(field, line)| {
@@ -103,7 +107,7 @@ impl Campaign {
             format!("{}: `{field}` on line {line} is not used with `kind: {kind}`", path.display())
         });
         let noisy = plan.noisy.iter().map(|said| format!("{}: {said}", path.display()));
-        let far = [("wrench", plan.wrench.1), ("measured", plan.measured.1)].into_iter().filter_map(|(field, at)| {
+        let far = [("wrench", plan.wrench.1), ("measured", plan.measured.0.1)].into_iter().filter_map(|(field, at)| {
             let distance = at.iter().map(|value| value * value).sum::<f64>().sqrt();
             (distance > FAR_FROM_TCP && plan.kind != Kind::Clamped).then(|| {
                 let file = path.display();
@@ -154,7 +158,7 @@ fn plan(document: &Document, folder: &Path) -> Option<Plan> {
     let kind = map.require("kind", "kind: displacement").and_then(|node| node.choice(&kinds));
     let columns = renamed(&map);
     let wrench = place(&map, "wrench");
-    let measured = place(&map, "measured");
+    let measured = measured(&map);
     let noise = noise(&map);
     let noisy = noise.map(|noise| noisy(&map, noise)).unwrap_or_default();
     let holdout = holdout(&map);
@@ -246,7 +250,25 @@ fn file(map: &Map<'_>, field: &str, example: &str, folder: &Path) -> Option<Stri
 /// `{frame: base, at: tcp}`; left out, that is what it is.
 pub fn place(map: &Map<'_>, field: &str) -> Option<(Frame, [f64; 3])> {
     let Some(node) = map.get(field) else { return Some((Frame::Base, [0.0; 3])) };
-    let place = node.map(&["frame", "at"])?;
+    frame_and_point(&node.map(&["frame", "at"])?)
+}
+
+/// The same with the direction of a single gauge: `{along: [0, 0, 1]}`, of any length.
+fn measured(map: &Map<'_>) -> Option<Measured> {
+    let Some(node) = map.get("measured") else { return Some(((Frame::Base, [0.0; 3]), None)) };
+    let said = node.map(&["frame", "at", "along"])?;
+    let place = frame_and_point(&said);
+    let Some(along) = said.get("along") else { return Some((place?, None)) };
+    let vector = along.quantities::<3>(Dimension::Number)?;
+    let length = vector.iter().map(|value| value * value).sum::<f64>().sqrt();
+    if !(length > 0.0 && length.is_finite()) {
+        along.error("this vector has no direction", "e.g. `along: [0, 0, 1]`");
+        return None;
+    }
+    Some((place?, Some(vector.map(|value| value / length))))
+}
+
+fn frame_and_point(place: &Map<'_>) -> Option<(Frame, [f64; 3])> {
     let frame = match place.get("frame") {
         Some(frame) => frame.choice(&[("base", Frame::Base), ("tool", Frame::Tool)]),
         None => Some(Frame::Base),

@@ -20,7 +20,7 @@ pub struct Renamed {
 }
 
 /// What campaigns call the columns that are not of joints.
-const COLUMNS: [&str; 23] = [
+const COLUMNS: [&str; 24] = [
     "pose",
     "visit",
     "time",
@@ -34,6 +34,7 @@ const COLUMNS: [&str; 23] = [
     "dx",
     "dy",
     "dz",
+    "d",
     "rx",
     "ry",
     "rz",

@@ -25,7 +25,7 @@ pub fn schema() -> Value {
             "description": "Columns that the table has under other names, e.g. {q1: \"Achse 1\"}",
         }),
         "wrench" => place("Where the loads act, and in which frame they are given"),
-        "measured" => place("Where displacements or positions are read, and in which frame they are given"),
+        "measured" => measured(),
         "noise" => described(
             object(&["displacement", "rotation"], &[], |field| match field {
                 "displacement" => quantity(Dimension::Length, Sign::Positive, "Of one axis of a position"),
@@ -38,16 +38,30 @@ pub fn schema() -> Value {
     document("A campaign: what was measured on a robot", schema)
 }
 
+fn measured() -> Value {
+    let schema = object(&["frame", "at", "along"], &[], |field| match field {
+        "along" => described(
+            list(quantity(Dimension::Number, Sign::Any, "A component"), 3),
+            "The direction in that frame in which a single gauge reads the column `d`",
+        ),
+        field => of_place(field),
+    });
+    described(schema, "Where displacements or positions are read, and in which frame they are given")
+}
+
 /// The schema of `{frame: base, at: tcp}`.
 pub fn place(what: &str) -> Value {
-    let schema = object(&["frame", "at"], &[], |field| match field {
+    described(object(&["frame", "at"], &[], of_place), what)
+}
+
+fn of_place(field: &str) -> Value {
+    match field {
         "frame" => default(word(&["base", "tool"], "The frame of the components"), "base"),
         _ => {
             let point = list(quantity(Dimension::Length, Sign::Any, "A coordinate"), 3);
             default(described(either(json!({ "const": "tcp" }), point), "The point, in the tool frame"), "tcp")
         }
-    });
-    described(schema, what)
+    }
 }
 
 /// The schema of what is kept from the fit.

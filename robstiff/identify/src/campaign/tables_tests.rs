@@ -126,3 +126,39 @@ fn a_table_without_readings_is_one_problem() {
     let some = rows.replacen(";;;", ";1;2;3", 1);
     assert_eq!(problems(CAMPAIGN, &format!("{HEADER}\n{some}")).len(), 3);
 }
+
+#[test]
+fn a_dial_gauge_reads_along_one_axis() {
+    let table = "pose,q1 [deg],q2,Fx,Fy,Fz,dz [um]\na,90,0.5,1,2,3,4\n";
+    let data = read(CAMPAIGN, table);
+    assert_eq!((data.directions, data.rows[0].displacement), (std::vec![[0.0, 0.0, 1.0]], [0.0, 0.0, 4e-6]));
+    let campaign = Folder::new(CAMPAIGN, table).read().unwrap();
+    let told = "of the displacement only `dz` is read: how far the tool moves across is not known";
+    assert!(campaign.warnings.iter().any(|said| said.contains(told)), "{:?}", campaign.warnings);
+}
+
+#[test]
+fn a_dial_gauge_reads_along_a_direction_that_the_campaign_gives() {
+    let table = "pose,q1 [deg],q2,Fx,Fy,Fz,d [um]\na,90,0.5,1,2,3,10\n";
+    let along = format!("{CAMPAIGN}measured: {{along: [0, -3, 4]}}\n");
+    let data = read(&along, table);
+    let off = data.rows[0].displacement.into_iter().zip([0.0, -6e-6, 8e-6]).map(|(a, b)| (a - b).abs()).sum::<f64>();
+    assert!(off < 1e-18 && data.directions == [[0.0, -0.6, 0.8]], "{:?}", data.rows);
+    assert_eq!(
+        problems(CAMPAIGN, table),
+        ["1:1 the column `d` is a displacement along one direction, and the campaign does not say which"]
+    );
+    assert_eq!(problems(&along, &table.replace(",d [um]", ",dz [um]")), ["1:1 the column `d` is missing"]);
+    for none in ["[0, 0, 0]", "[1e-300, 0, 0, 0]", "[0, 0]", "up"] {
+        let said = refused(&format!("{CAMPAIGN}measured: {{along: {none}}}\n"), table);
+        assert!(said.contains("campaign.yaml:"), "{said}");
+    }
+}
+
+#[test]
+fn two_axes_of_three_or_one_with_a_slip_of_the_pen_are_no_dial_gauge() {
+    let table = "pose,q1 [deg],q2,Fx,Fy,Fz,dx,dz\na,90,0.5,1,2,3,1,2\n";
+    assert_eq!(problems(CAMPAIGN, table), ["1:1 the column `dy` is missing"]);
+    let table = "pose,q1 [deg],q2,Fx,Fy,Fz,dX,DY,dz\na,90,0.5,1,2,3,1,2,3\n";
+    assert_eq!(problems(CAMPAIGN, table).len(), 2);
+}

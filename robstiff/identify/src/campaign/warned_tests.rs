@@ -135,7 +135,7 @@ fn the_unit_that_is_asked_for_makes_displacements_plausible() {
     };
     // The small ones of a row are in the unit of the others.
     let of = |unit: &str, angle: &str| {
-        ["dx", "rx", "dy"].map(|name| format!("`{name} [{}]`", if name == "rx" { angle } else { unit }))
+        ["dx", "dy", "rx"].map(|name| format!("`{name} [{}]`", if name == "rx" { angle } else { unit }))
     };
     assert_eq!(asked("a,0,0,1,2,3,473.1,-1.5,0,1.2,0,0\n"), of("um", "mrad"));
     assert_eq!(asked("a,0,0,1,2,3,0.473,-0.15,0,300,0,0\n"), of("mm", "urad"));

@@ -237,6 +237,7 @@ impl Estimate {
 /// readings against their loads, or in another unit.
 pub fn identify(campaign: &Campaign) -> Result<Identification, Error> {
     campaign.check().map_err(Error::Invalid)?;
+    whole(campaign)?;
     let found = match &campaign.data {
         Data::Displacement(_) => displacement::identify(campaign),
         Data::Position(data) => positions::identify(campaign, data),
@@ -251,6 +252,16 @@ pub fn identify(campaign: &Campaign) -> Result<Identification, Error> {
     match scale::other_unit(campaign, &found.estimates) {
         Some(why) => Err(Error::OtherUnit(why)),
         None => Ok(found),
+    }
+}
+
+/// Refuses displacements along one direction.
+pub(crate) fn whole(campaign: &Campaign) -> Result<(), Error> {
+    match &campaign.data {
+        Data::Displacement(data) if !data.is_whole() => Err(Error::OtherCampaign(
+            "displacements along one direction only: `trace` takes them, this needs dx, dy and dz".to_string(),
+        )),
+        _ => Ok(()),
     }
 }
 

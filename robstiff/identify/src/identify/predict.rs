@@ -27,6 +27,7 @@ pub fn predict(description: &Description, campaign: &Campaign) -> Result<Predict
             "the campaign is of a robot with {expected}, this one has {found}"
         )));
     }
+    super::whole(campaign)?;
     match &campaign.data {
         Data::Displacement(data) => displacements(description, data),
         Data::Position(data) => positions::predict(description, data),

@@ -54,6 +54,7 @@ fn campaign(truth: &Description, declared: Description, frame: Frame, at: [f64; 
         wrench_at: at,
         measured_frame: frame,
         measured_at: at,
+        directions: crate::campaign::AXES.to_vec(),
         poses: (0..30).map(|i| format!("{i}")).collect(),
         visits: (0..30).map(|i| format!("{i}")).collect(),
         rows: rows.collect(),
@@ -218,6 +219,7 @@ fn the_second_order_is_that_of_a_lever() {
         wrench_at: [0.0; 3],
         measured_frame: Frame::Base,
         measured_at: [0.0; 3],
+        directions: crate::campaign::AXES.to_vec(),
         poses: vec!["1".into()],
         visits: vec!["1".into()],
         rows: vec![Observation {

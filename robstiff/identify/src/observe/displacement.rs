@@ -93,7 +93,7 @@ impl<'c> Displacement<'c> {
         let declared: Vec<Stand> = stations.iter().map(|q| arm.stand(q, &[])).collect();
         let turns = data.rows.iter().all(|row| row.rotation.is_some()) && !data.rows.is_empty();
         let (encoders, turned, given) = encoders(data);
-        let directions: Vec<Vector3<f64>> = (0..3).map(|k| Vector3::ith(k, 1.0)).collect();
+        let directions: Vec<Vector3<f64>> = data.directions.iter().copied().map(Vector3::from).collect();
         let rig = Rig::declared((data.wrench_frame, data.wrench_at), (data.measured_frame, data.measured_at));
         let weight = Weight::of(robot);
         let weights = |joint: usize| -> Vec<f64> {

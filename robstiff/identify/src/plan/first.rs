@@ -16,7 +16,7 @@ use robstiff_robots::Description;
 use super::Options;
 use super::regressors::Visit;
 use super::space::{Space, directions};
-use crate::campaign::{Campaign, Data, Displacements, Frame, Noise, Observation as Row};
+use crate::campaign::{AXES, Campaign, Data, Displacements, Frame, Noise, Observation as Row};
 use crate::effects::Side;
 use crate::identify::Error;
 use crate::model::Size;
@@ -119,6 +119,7 @@ pub fn unread(visits: &[Visit]) -> Displacements {
         wrench_at: [0.0; 3],
         measured_frame: Frame::Base,
         measured_at: [0.0; 3],
+        directions: AXES.to_vec(),
         poses: names.clone(),
         visits: names,
         rows,

@@ -398,14 +398,17 @@ pub fn rows_of_blocks(readings: &Readings, training: &[bool]) -> Vec<Vec<usize>>
 /// Whether rows share an unloaded reading with others.
 fn has_shared(readings: &Readings) -> bool {
     let visits = readings.visit.iter().max().map_or(0, |last| last + 1);
-    // Of a clamped axis every row has its own.
-    readings.differences && readings.width > 1 && visits < readings.rows()
+    // Of a clamped axis every row has its own; what turns it is no force on the tool.
+    readings.differences && is_loaded(readings) && visits < readings.rows()
+}
+
+fn is_loaded(readings: &Readings) -> bool {
+    readings.force.iter().any(|force: &Vector3<f64>| *force != Vector3::zeros())
 }
 
 /// Whether anything loads the arm, so that there can be a discrepancy.
 pub fn discrepancies(readings: &Readings) -> &'static [f64] {
-    let is_loaded = readings.force.iter().any(|force: &Vector3<f64>| *force != Vector3::zeros());
-    if is_loaded { &DISCREPANCIES } else { &DISCREPANCIES[..1] }
+    if is_loaded(readings) { &DISCREPANCIES } else { &DISCREPANCIES[..1] }
 }
 
 /// The log-likelihood of whitened residuals at their most likely size, and that size. Those that are far

@@ -10,7 +10,7 @@ use robstiff_robots::quantity::finite;
 
 use super::draw::{PACE, Stream, names, stream};
 use super::{Pull, Scenario, UnderForces};
-use crate::campaign::{Displacements, Frame, Observation};
+use crate::campaign::{AXES, Displacements, Frame, Observation};
 use crate::identify::samples::{Samples, turn_of};
 use crate::probability::normal;
 use robstiff::elements::deformed;
@@ -66,6 +66,7 @@ fn loads(scenario: &Scenario, under: &UnderForces, poses: &[Vec<f64>]) -> Displa
         wrench_at: scenario.wrench_at,
         measured_frame,
         measured_at: scenario.measured_at,
+        directions: AXES.to_vec(),
         poses: names(poses.len()),
         visits: names(if under.shares_unloaded { poses.len() * scenario.visits } else { rows.len() }),
         rows,

@@ -57,14 +57,16 @@ pub fn account_for(asked: &mut Triage, campaign: &Campaign, trace: &Trace) {
 }
 
 /// The campaign with what the arm would have read if nothing but springs gave way, and what the
-/// model leaves; `None` of positions.
+/// model leaves; `None` of positions, and of readings along an axis or two, which the checks do not ask.
 fn linear(campaign: &Campaign, trace: &Trace) -> Option<Campaign> {
     let mut robot = campaign.robot.clone();
     robot.joints.clone_from(&trace.description.joints);
     let is_law = |effect: &Effect| LAWS.contains(&effect.kind());
     robot.effects = trace.description.effects.iter().filter(|effect| !is_law(effect)).copied().collect();
     let data = match &campaign.data {
-        Data::Displacement(data) => Data::Displacement(displacements(data, &robot, campaign, trace)?),
+        Data::Displacement(data) if data.is_whole() => {
+            Data::Displacement(displacements(data, &robot, campaign, trace)?)
+        }
         Data::Clamped(rows) => {
             let row = |(row, left): (&ClampedRow, &RowResidual)| ClampedRow {
                 deflection: robot.joints[row.axis - 1].compliance() * row.torque + left.after[0],
@@ -72,7 +74,7 @@ fn linear(campaign: &Campaign, trace: &Trace) -> Option<Campaign> {
             };
             Data::Clamped(rows.iter().zip(&trace.residuals).map(row).collect())
         }
-        Data::Position(_) => return None,
+        Data::Displacement(_) | Data::Position(_) => return None,
     };
     Some(Campaign { robot, data, ..campaign.clone() })
 }

@@ -235,7 +235,7 @@ pub fn trace(campaign: &Campaign, options: &Options, progress: &Progress<'_>) ->
 fn too_little(case: &Case<'_>, found: &crate::select::passes::Found) -> Option<String> {
     let readings = case.observation.readings();
     let blocks = case.training.iter().filter(|fitted| **fitted).count();
-    let is_clamped = readings.reported == 1 && readings.width == 1;
+    let is_clamped = matches!(case.scene.what, crate::effects::What::Clamped);
     if !is_clamped && blocks < FEWEST_POSES {
         return Some(format!("{blocks} poses are too few to judge by, at least {FEWEST_POSES} are needed"));
     }

@@ -208,3 +208,34 @@ fn an_angle_between_axes_is_fitted_where_they_are_parallel() {
     };
     assert_eq!(layout.always().filter_map(joint).collect::<Vec<_>>(), [2]);
 }
+
+/// A single dial gauge along a direction of the base frame.
+fn gauged(mut campaign: Campaign, along: [f64; 3]) -> Campaign {
+    let Data::Displacement(data) = &mut campaign.data else { unreachable!("displacements") };
+    for row in &mut data.rows {
+        let read: f64 = along.iter().zip(row.displacement).map(|(a, d)| a * d).sum();
+        row.displacement = along.map(|a| a * read);
+    }
+    data.directions = std::vec![along];
+    campaign
+}
+
+#[test]
+fn a_dial_gauge_alone_shows_what_the_arm_lacks() {
+    let noise = 2_f64.sqrt() * 8e-6;
+    for along in [[0.0, 0.0, 1.0], [0.6, 0.0, 0.8]] {
+        let found = traced(&gauged(simulated(LOADS, Some(8e-6)), along));
+        assert_eq!(found.verdict, Verdict::Adequate, "{} {:?}", found.why, found.noise);
+        assert!((found.after.rms / noise - 1.0).abs() < 0.1, "{}", found.after.rms);
+
+        let found = traced(&gauged(simulated(&format!("{LOADS}{TILT}"), Some(8e-6)), along));
+        assert_eq!(names(&found), ["transverse_compliance@joint 3"], "{:?}", found.suspected);
+        assert!(
+            found.identified.rms > 2.0 * noise && found.after.rms < 1.1 * noise,
+            "{:?} {:?}",
+            found.identified,
+            found.after
+        );
+        assert_eq!(found.components, 1);
+    }
+}

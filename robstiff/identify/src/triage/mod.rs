@@ -159,6 +159,10 @@ pub fn triage(campaign: &Campaign) -> Triage {
     let (mut checks, reading, outliers) = match &campaign.data {
         Data::Clamped(rows) => (clamped::checks(campaign, rows), None, Vec::new()),
         Data::Position(data) => (positions::checks(data), None, Vec::new()),
+        Data::Displacement(data) if !data.is_whole() => {
+            let needs = "displacements along three axes".to_owned();
+            (CHECKS.iter().map(|&(name, question, _)| (name, question, Err(needs.clone()))).collect(), None, Vec::new())
+        }
         Data::Displacement(data) => {
             let evidence = Evidence::new(campaign, data);
             let checks: Vec<_> = CHECKS.iter().map(|&(name, question, ask)| (name, question, ask(&evidence))).collect();

@@ -58,6 +58,7 @@ pub fn misread(campaign: &Campaign, found: &Identification) -> Option<Misread> {
         return None;
     }
     match &campaign.data {
+        Data::Displacement(data) if !data.is_whole() => None,
         Data::Displacement(data) => {
             in_displacements(&campaign.robot, data, |row| !found.left_out.contains(&data.rows[row].line), rms, FAR_LESS)
         }
