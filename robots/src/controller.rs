@@ -1,6 +1,6 @@
 //! What the controller of a robot calls its joints, and where it counts from.
 
-use crate::description::Placement;
+use crate::placement::Placement;
 
 /// How a controller sees its robot.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -3,6 +3,7 @@
 use crate::controller::Controller;
 use crate::effect::physics::Row;
 use crate::effect::{Convention, Effect, JointKind};
+use crate::placement::Placement;
 
 /// The most joints a robot may have.
 pub const MOST_JOINTS: usize = 8;
@@ -180,16 +181,6 @@ pub struct Part {
     pub name: String,
     /// Its compliance [rad/Nm or m/N].
     pub value: f64,
-}
-
-/// Where one frame stands in another.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Placement {
-    /// The origin (m).
-    pub xyz: [f64; 3],
-    /// Roll, pitch, yaw about the fixed x, y, z axes (rad):
-    /// `R = Rz(yaw) Ry(pitch) Rx(roll)`.
-    pub rpy: [f64; 3],
 }
 
 /// Mass of the body that moves with joint `i`, for gravity.

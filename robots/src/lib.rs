@@ -24,6 +24,8 @@ pub mod diagnostic;
 #[cfg(feature = "read")]
 pub mod document;
 #[cfg(feature = "read")]
+mod placement;
+#[cfg(feature = "read")]
 pub mod quantity;
 #[cfg(feature = "read")]
 mod read;
@@ -54,10 +56,12 @@ mod write;
 #[cfg(feature = "read")]
 pub use controller::{Controller, Pendant};
 #[cfg(feature = "read")]
-pub use description::{Description, Joint, Link, Part, Placement};
+pub use description::{Description, Joint, Link, Part};
 #[cfg(feature = "read")]
 pub use diagnostic::{Diagnostic, Diagnostics, Line};
 pub use effect::{Convention, DhEntry, Effect, JointKind, Place};
+#[cfg(feature = "read")]
+pub use placement::Placement;
 #[cfg(feature = "read")]
 pub use read::Outline;
 #[cfg(feature = "read")]

@@ -10,10 +10,11 @@ mod outline;
 pub use outline::Outline;
 
 use crate::angle::snapped;
-use crate::description::{Description, Joint, Link, MOST_JOINTS, Part, Placement};
+use crate::description::{Description, Joint, Link, MOST_JOINTS, Part};
 use crate::diagnostic::Diagnostics;
 use crate::document::{Document, Map, Node};
 use crate::effect::{Convention, Effect, JointKind};
+use crate::placement::Placement;
 use crate::quantity::Dimension;
 use crate::read_error::ReadError;
 use crate::text;

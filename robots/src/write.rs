@@ -3,8 +3,9 @@
 
 use crate::angle::snapped;
 use crate::controller::{Controller, Pendant};
-use crate::description::{Description, Joint, Link, Placement};
+use crate::description::{Description, Joint, Link};
 use crate::effect::{Effect, JointKind, Place};
+use crate::placement::Placement;
 use crate::quantity::{self, Dimension, number};
 use std::fmt::Write;
 

@@ -57,9 +57,11 @@
 //! Every function panics if there are not as many results as poses.
 
 mod block;
+mod by_joint;
 mod dispatch;
 mod grid;
 mod instructions;
+mod joints;
 mod known;
 mod needs;
 #[cfg(feature = "rayon")]
@@ -75,9 +77,10 @@ use core::ops::Range;
 
 use nalgebra::{Matrix6, Vector3, Vector6};
 
-pub use block::BLOCK;
+pub use by_joint::ByJoint;
 pub use grid::Grid;
-pub use poses::{ByJoint, Poses};
+pub use joints::BLOCK;
+pub use poses::Poses;
 
 use crate::{Real, Robot, trig};
 use poses::View;

@@ -3,9 +3,10 @@
 use super::{CONTROLLER, PENDANT, every, optional};
 use crate::angle::snapped;
 use crate::controller::{Controller, Pendant};
-use crate::description::{Joint, Placement};
+use crate::description::Joint;
 use crate::document::Node;
 use crate::effect::JointKind;
+use crate::placement::Placement;
 use crate::quantity::Dimension;
 use crate::words::count;
 

@@ -7,7 +7,7 @@ use std::path::Path;
 
 use common::{fail, folder, inside, json, names, succeed};
 
-const FILES: [&str; 3] = ["campaign.yaml", "how-to-measure.html", "loads.csv"];
+const FILES: [&str; 4] = ["campaign.schema.json", "campaign.yaml", "how-to-measure.html", "loads.csv"];
 
 /// Fills in what would be read on an arm that is as a description says, with some noise.
 fn fill(folder: &Path, truth: &str) {

@@ -217,6 +217,35 @@ fn a_tolerance_passes_or_fails_at_the_top() {
     assert!(fail(2, &[&arguments[..], &["--out", &page]].concat()).contains("a tolerance is a length"));
 }
 
+#[test]
+fn rapids_are_thin_and_grey_and_count_nowhere() {
+    let folder = folder("view-rapids");
+    let [table, page, told] = ["rapids.csv", "page.html", "told.json"].map(|name| inside(&folder, name));
+    let text = fs::read_to_string(docs("pocket-solved.csv")).unwrap();
+    let view = |rapid: fn(usize) -> &'static str| {
+        let rows = text.lines().enumerate().map(|(k, line)| match k {
+            0 => format!("{line},rapid\n"),
+            _ => format!("{line},{}\n", rapid(k)),
+        });
+        fs::write(&table, rows.collect::<String>()).unwrap();
+        ["view", "kuka-kr270-r2700", "--path", &table, "--out", &page, "--tolerance", "1 mm", "--json", &told]
+    };
+    // The rows from 50 on, the worst of all among them.
+    let said = succeed(&view(|k| if k < 50 { "0" } else { "1" }));
+    assert!(said.contains("109 poses") && said.contains("none of 49 points is beyond"), "{said}");
+    let drawn = fs::read_to_string(&page).unwrap();
+    assert_eq!((drawn.matches("class=\"path rapid\"").count(), drawn.matches("class=\"path shade").count()), (60, 48));
+    let told = json(&told);
+    let poses = told["poses"].as_array().unwrap();
+    assert!(poses[..49].iter().all(|pose| pose["rapid"] == false && pose["value"].is_number()));
+    assert!(poses[49..].iter().all(|pose| pose["rapid"] == true && pose["value"].is_null()));
+    if let Some(seen) = look(&folder, &page) {
+        assert_alive(&seen);
+    }
+    let said = fail(1, &view(|k| if k == 7 { "yes" } else { "0" }));
+    assert!(said.contains("rapids.csv:8:"), "{said}");
+}
+
 /// Beside a pocket of 40 mm an ellipsoid as large as a sixth of the arm says nothing.
 #[test]
 fn no_ellipsoid_is_longer_than_the_path() {

@@ -4,28 +4,15 @@ use nalgebra::SVector;
 
 use super::Float;
 use super::instructions::Instructions;
+use super::joints::{BLOCK, Joints};
 use super::known::Known;
 use super::needs::{Needs, Traced};
 use super::quantities::Quantity;
 use super::sink::{Sink, Vectors};
 use super::source::{Filled, Source};
 
-/// Poses in a block: what a block needs stays in the first-level cache.
-pub const BLOCK: usize = 64;
-
 /// The poses of a vector, at least: blocks are filled up to a multiple.
 const VECTOR: usize = 16;
-
-/// The joint coordinates of a block of poses, number by number.
-///
-/// Aligned, because a vector that is half in one line of the cache and half in
-/// the next takes twice as long.
-#[repr(align(64))]
-pub struct Joints<T, const N: usize> {
-    pub values: [[T; BLOCK]; N],
-    pub sines: [[T; BLOCK]; N],
-    pub cosines: [[T; BLOCK]; N],
-}
 
 #[repr(align(64))]
 struct Numbers<T, const M: usize>([[T; BLOCK]; M]);

@@ -5,8 +5,8 @@ use core::ops::Range;
 use nalgebra::SVector;
 
 use super::Float;
-use super::block::{BLOCK, Joints};
 use super::instructions::Instructions;
+use super::joints::{BLOCK, Joints};
 use super::needs::Needs;
 use super::source::{Filled, Source};
 use crate::trig;

@@ -8,7 +8,7 @@
 )]
 
 use super::Float;
-use super::block::BLOCK;
+use super::joints::BLOCK;
 use crate::trig;
 
 /// What the instructions of a level can do and the compiler does not see.
@@ -190,7 +190,7 @@ impl<F: trig::Float> ByHand for F {}
 mod by_hand {
     use core::arch::x86_64::*;
 
-    use crate::batch::block::BLOCK;
+    use crate::batch::BLOCK;
     use crate::trig::{circle, tables};
 
     /// Both passes of a module of `trig/circle`.

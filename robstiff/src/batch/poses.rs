@@ -5,6 +5,7 @@ use core::ops::Range;
 use nalgebra::SVector;
 
 use super::Float;
+use super::by_joint::ByJoint;
 use super::grid::{Grid, Steps};
 use super::source::Source;
 
@@ -30,55 +31,6 @@ pub trait View<T, const N: usize>: Copy + Send + Sync {
     fn source(self) -> impl Source<T, N>;
 }
 
-/// Poses by joint: the coordinates of each joint (rad or m) side by side, those of pose
-/// `i` at place `i` of every slice. As a column a joint in a table, and a view, too.
-///
-/// ```
-/// use robstiff::batch::{self, ByJoint};
-/// use robstiff::nalgebra::{SVector, Vector3};
-///
-/// robstiff::robot!("rv130hsc.yaml");
-///
-/// let turns: Vec<f64> = (0..100).map(|i| 0.02 * i as f64).collect();
-/// let (shoulder, elbow, wrist) = ([-0.5; 100], [0.5; 100], [0.0; 100]);
-/// let poses = ByJoint::new([&turns[..], &shoulder, &elbow, &wrist, &turns]);
-/// let (mut columns, mut slice) = (vec![0.0; 100], vec![0.0; 100]);
-/// batch::directional_compliance(&Rv130hsc, poses, &Vector3::x(), &mut columns);
-/// // The same, pose by pose.
-/// let poses: Vec<_> = turns.iter().map(|&q| SVector::from([q, -0.5, 0.5, 0.0, q])).collect();
-/// batch::directional_compliance(&Rv130hsc, &poses, &Vector3::x(), &mut slice);
-/// assert_eq!(columns, slice);
-/// ```
-#[derive(Clone, Copy, Debug)]
-pub struct ByJoint<'p, T, const N: usize>([&'p [T]; N]);
-
-impl<'p, T, const N: usize> ByJoint<'p, T, N> {
-    /// Poses whose coordinates are given joint by joint.
-    ///
-    /// # Panics
-    /// If some joint has more coordinates than another.
-    pub fn new(joints: [&'p [T]; N]) -> Self {
-        let poses = Self(joints);
-        assert!(joints.iter().all(|joint| joint.len() == poses.len()), "every joint must have as many coordinates");
-        poses
-    }
-
-    /// How many poses there are.
-    pub fn len(&self) -> usize {
-        self.0.first().map_or(0, |joint| joint.len())
-    }
-
-    /// Whether there is none.
-    pub fn is_empty(&self) -> bool {
-        self.len() == 0
-    }
-
-    /// The coordinates of a joint.
-    pub(super) fn joint(&self, joint: usize) -> &'p [T] {
-        self.0[joint]
-    }
-}
-
 impl<T: Float, const N: usize> View<T, N> for &[SVector<T, N>] {
     fn count(&self) -> usize {
         self.len()
@@ -99,7 +51,7 @@ impl<T: Float, const N: usize> View<T, N> for ByJoint<'_, T, N> {
     }
 
     fn cut(&self, poses: Range<usize>) -> Self {
-        Self(self.0.map(|joint| &joint[poses.clone()]))
+        self.part(poses)
     }
 
     fn source(self) -> impl Source<T, N> {

@@ -5,7 +5,7 @@ use core::ops::Range;
 use nalgebra::{Matrix6, SVector, Vector3, Vector6};
 
 use super::Float;
-use super::block::BLOCK;
+use super::joints::BLOCK;
 use crate::robot::TRIANGLE;
 use crate::{Real, Robot};
 

@@ -4,8 +4,8 @@ use core::array;
 use core::ops::Range;
 
 use super::Float;
-use super::block::BLOCK;
 use super::instructions::Instructions;
+use super::joints::BLOCK;
 use super::quantities::Results;
 
 /// How a sink takes numbers that are still in registers. Gain: `benches/README.md`.

@@ -5,10 +5,9 @@ use core::array;
 use nalgebra::SVector;
 
 use super::Float;
-use super::block::{BLOCK, Joints};
 use super::instructions::Instructions;
+use super::joints::{BLOCK, Joints};
 use super::needs::Needs;
-use super::poses::ByJoint;
 
 /// Poses, block after block.
 pub trait Source<T, const N: usize> {
@@ -46,7 +45,7 @@ pub enum Filled {
 
 impl Filled {
     #[inline(always)]
-    fn each_if(is_within: bool, count: usize) -> Self {
+    pub fn each_if(is_within: bool, count: usize) -> Self {
         if is_within { Self::Each(count) } else { Self::Beyond(count) }
     }
 }
@@ -90,49 +89,6 @@ impl<T: Float, const N: usize> Source<T, N> for &[SVector<T, N>] {
             }
         }
         let angles = array::from_fn(|joint| needs.sin_cos(joint).then_some(&values[joint]));
-        Filled::each_if(instructions.sin_cos_all::<T, N, FUSED>(angles, sines, cosines), count)
-    }
-}
-
-/// The same, where the coordinates of a joint lie side by side already: sines read them
-/// where they are. Gain: `benches/README.md`.
-impl<T: Float, const N: usize> Source<T, N> for ByJoint<'_, T, N> {
-    fn poses(&self) -> usize {
-        self.len()
-    }
-
-    fn pose(&self, pose: usize) -> SVector<T, N> {
-        SVector::from_fn(|joint, _| self.joint(joint)[pose])
-    }
-
-    #[inline(always)]
-    fn fill<const FUSED: bool>(
-        &mut self,
-        first: usize,
-        needs: Needs,
-        joints: &mut Joints<T, N>,
-        instructions: impl Instructions,
-    ) -> Filled {
-        let count = (self.len() - first).min(BLOCK);
-        if cfg!(feature = "platform-trig") {
-            return Filled::Beyond(count);
-        }
-        let Joints { values, sines, cosines } = joints;
-        let mut angles = [None; N];
-        for (joint, values) in values.iter_mut().enumerate() {
-            let given = &self.joint(joint)[first..];
-            let block = if let Some(block) = given.first_chunk() {
-                if needs.value(joint) {
-                    *values = *block;
-                }
-                block
-            } else {
-                values[..count].copy_from_slice(given);
-                values[count..].fill(T::ZERO);
-                &*values
-            };
-            angles[joint] = needs.sin_cos(joint).then_some(block);
-        }
         Filled::each_if(instructions.sin_cos_all::<T, N, FUSED>(angles, sines, cosines), count)
     }
 }

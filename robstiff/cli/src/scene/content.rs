@@ -35,6 +35,8 @@ pub struct Row {
     pub wrench: Option<[f64; 6]>,
     /// What colours it, in its unit, in place of the displacement.
     pub value: Option<(f64, String)>,
+    /// Whether it is reached by a rapid, in which nothing is cut.
+    pub rapid: bool,
 }
 
 /// A pose that is drawn.
@@ -55,8 +57,10 @@ pub struct Pose {
     pub measured: Option<[f64; 3]>,
     /// By how much the position that was read is off the one that is computed (um).
     pub off: Option<[f64; 3]>,
-    /// What colours the pose.
+    /// What colours the pose; nothing colours a rapid.
     pub value: Option<f64>,
+    /// Whether it is reached by a rapid.
+    pub rapid: bool,
     /// What the campaign calls it.
     pub name: Option<String>,
 }
@@ -137,6 +141,7 @@ impl Scene {
         // A row without a value among others that have one has none.
         let has_values = rows.iter().any(|row| row.value.is_some());
         let sizes = sizes.map(|(row, moved)| match &row.value {
+            _ if row.rapid => None,
             Some((value, _)) => Some(*value),
             None => moved.map(length).filter(|_| !has_values),
         });
@@ -147,6 +152,7 @@ impl Scene {
             with_arm!(robot, |arm| drawn.iter().map(|&row| pose(robot, &arm, row, &rows[row].q)).collect());
         for pose in &mut poses {
             (pose.displacement, pose.value) = (displacements[pose.row], sizes[pose.row]);
+            pose.rapid = rows[pose.row].rapid;
         }
         let unit = rows.iter().find_map(|row| row.value.as_ref().map(|(_, unit)| unit.clone()));
         let name = if rows.iter().any(|row| row.wrench.is_some()) { "deviation under the force" } else { "" };
@@ -220,6 +226,7 @@ impl Scene {
             q: q.to_vec(),
             wrench: None,
             value: Some((length(row.off) * 1e6, "um".to_owned())),
+            rapid: false,
         });
         let asked: Vec<Row> = asked.collect();
         let mut scene = Self::new(robot, Kind::Campaign, &asked).coloured_by(Some(name));
@@ -264,6 +271,7 @@ impl Scene {
                 "measured": pose.measured.map(numbers),
                 "off": pose.off.map(numbers),
                 "value": pose.value.map(number),
+                "rapid": pose.rapid,
                 "name": pose.name,
             })).collect::<Value>(),
         })
@@ -333,6 +341,7 @@ fn pose<const N: usize>(description: &Description, robot: &Generic<N>, row: usiz
         measured: None,
         off: None,
         value: None,
+        rapid: false,
         name: None,
     }
 }

@@ -80,7 +80,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         Scene::new(robot, Kind::Path, &rows(table, arguments.force)).coloured_by(column)
     } else {
         let q = arguments.at.pose(robot)?;
-        let row = Row { q, wrench: arguments.force.map(Force::wrench), value: None };
+        let row = Row { q, wrench: arguments.force.map(Force::wrench), value: None, rapid: false };
         Scene::new(robot, Kind::Pose, &[row])
     };
     let scene = scene.within(arguments.tolerance)?;
@@ -94,11 +94,12 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 }
 
 fn rows(table: JointTable, force: Option<Force>) -> Vec<Row> {
-    let JointTable { q, wrenches, column, .. } = table;
+    let JointTable { q, wrenches, column, rapids, .. } = table;
     let rows = q.into_iter().enumerate().map(|(k, q)| Row {
         q,
         wrench: force.map(Force::wrench).or_else(|| Some(wrenches.as_ref()?[k])),
         value: column.as_ref().and_then(|column| Some((column.values[k]?, column.unit.clone()))),
+        rapid: rapids.as_ref().is_some_and(|rapids| rapids[k]),
     });
     rows.collect()
 }

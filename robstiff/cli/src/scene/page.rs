@@ -83,6 +83,12 @@ fn legend(scene: &Scene) -> String {
          and the stiffest direction. <span id=\"ellipsoid-scale\"></span></p></div>\n",
         text("h2", "Ellipsoid [µm/N]")
     );
+    if scene.poses.iter().any(|pose| pose.rapid) {
+        said += &format!(
+            "<div>{}<p>The thin grey line: nothing is cut there, and nothing is asked.</p></div>\n",
+            text("h2", "Rapids")
+        );
+    }
     let any = |of: fn(&Pose) -> Option<[f64; 3]>| scene.poses.iter().any(|pose| of(pose).is_some());
     if any(|pose| pose.displacement.or(pose.off)) {
         let arrow = match (any(|pose| pose.off), any(|pose| pose.measured)) {

@@ -173,6 +173,10 @@ fn path(svg: &mut Svg, view: &View, scene: &Scene) {
     let shade = |pose: &Pose| step(pose.value.map_or(nearest, f64::abs));
     for pair in scene.poses.windows(2).filter(|_| scene.kind == Kind::Path) {
         let [one, other] = [&pair[0], &pair[1]].map(|pose| pose.points.last().copied().unwrap_or_default());
+        if pair[1].rapid {
+            svg.line("path rapid", view.at(one), view.at(other));
+            continue;
+        }
         let worse = shade(&pair[0]).max(shade(&pair[1]));
         svg.line(&format!("path shade{worse:.0} wide{worse:.0}"), view.at(one), view.at(other));
     }

@@ -154,6 +154,10 @@ function drawPath(picture) {
       const [one, other] = [data.poses[k - 1], data.poses[k]];
       const n = data.value ? Math.max(shade(one.value), shade(other.value)) : 0;
       const points = [one.tcp, other.tcp];
+      if (other.rapid) {
+        picture.line(points, colours.css("soft"), 0.8);
+        continue;
+      }
       // Behind the neighbours' own colour.
       picture.line(points, colours.css("edge"), width(one, other) + 2.5, -0.03 * large);
       picture.line(points, colours.css(data.value ? `shade${n}` : "ink"), width(one, other), 0.01 * large);
@@ -179,7 +183,7 @@ function drawEllipsoids(picture, pose) {
     // Those that are clear of one another; the others would only hide the path.
     const longest = (of) => semiAxes(of)[0].length;
     const drawn = [pose];
-    data.poses.filter((_, k) => k % stride === 0 && k !== state.row).forEach((other) => {
+    data.poses.filter((other, k) => k % stride === 0 && k !== state.row && !other.rapid).forEach((other) => {
       const clear = (one) => norm(add(one.tcp, other.tcp, -1)) > 0.35 * (longest(one) + longest(other));
       if (data.kind === "path" && !drawn.every(clear)) return;
       drawn.push(other);

@@ -13,6 +13,7 @@ use robstiff_robots::{Description, catalogue};
 
 use crate::failure::Failure;
 use crate::input::{self, positive};
+use crate::json;
 use crate::output::{self, Files};
 use crate::text::count;
 
@@ -65,6 +66,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         .map_err(|error| Failure::new(error.to_string()))?;
     let mut files = Files::default();
     files.add(out.join("campaign.yaml"), campaign(&robot, &named));
+    files.add(out.join(SCHEMA), json::document(&robstiff_identify::campaign::schema::schema()));
     files.add(out.join("loads.csv"), table::table(&robot, &found));
     files.add(out.join("how-to-measure.html"), guide::page(&robot, &found));
     if let Some(text) = copy {
@@ -73,6 +75,9 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let said = files.write()?;
     output::print(page(&robot, &found, &out) + &said)
 }
+
+/// The schema of the campaign file, by which an editor completes and checks it.
+const SCHEMA: &str = "campaign.schema.json";
 
 fn stem(file: &str) -> &str {
     file.strip_suffix(".yaml").or_else(|| file.strip_suffix(".yml")).unwrap_or(file)
@@ -104,7 +109,8 @@ fn description(path: &Path) -> Result<(String, Option<String>), Failure> {
 
 fn campaign(robot: &Description, named: &str) -> String {
     format!(
-        "name: first loads on {}
+        "# yaml-language-server: $schema={SCHEMA}
+name: first loads on {}
 robot: {named}
 observations: loads.csv
 kind: displacement

@@ -23,6 +23,8 @@ pub struct JointTable {
     pub wrenches: Option<Vec<[f64; 6]>>,
     /// The column that was asked for.
     pub column: Option<Column>,
+    /// Whether each row is reached by a rapid, in which nothing is cut: what a column `rapid` says by 1 and 0.
+    pub rapids: Option<Vec<bool>>,
     /// What looks as if the table were another robot's, or in another unit.
     pub warnings: Vec<String>,
 }
@@ -40,7 +42,7 @@ pub struct Column {
 
 impl JointTable {
     /// Reads columns `q1` .. `qn`, where they are there `Fx Fy Fz`, all three, and of `Mx My Mz`
-    /// those that are, and the one of any other name that is asked for. Columns beyond these are left alone.
+    /// those that are, `rapid`, and the one of any other name that is asked for. Columns beyond these are left alone.
     ///
     /// # Errors
     /// A file that cannot be read, and every problem in it at its place.
@@ -82,6 +84,7 @@ fn rows(table: &Table<'_>, robot: &Description, column: Option<&str>) -> Option<
     let forces = names.map(|name| if is_forced { table.require(name, Dimension::Force) } else { None });
     let moments = ["Mx", "My", "Mz"].map(|name| table.numbers(name, Dimension::Torque));
     let wrench: Vec<_> = forces.into_iter().chain(moments).collect();
+    let rapid = table.numbers("rapid", Dimension::Number);
     let column = column.map(|name| table.raw(name));
     let q: Vec<_> = q.into_iter().collect::<Option<_>>()?;
     let forced = wrench.iter().any(Option::is_some);
@@ -99,6 +102,14 @@ fn rows(table: &Table<'_>, robot: &Description, column: Option<&str>) -> Option<
             Some((q.into_iter().collect::<Option<Vec<_>>>()?, components))
         })
         .collect();
+    let rapids = rapid.map(|column| {
+        let of = |record| table.number(record, column).map(|number| number != 0.0);
+        table.records.iter().map(of).collect::<Vec<_>>()
+    });
+    let rapids = match rapids {
+        Some(rapids) => Some(rapids.into_iter().collect::<Option<Vec<_>>>()?),
+        None => None,
+    };
     let column = match column {
         None => None,
         Some(column) => {
@@ -125,5 +136,5 @@ fn rows(table: &Table<'_>, robot: &Description, column: Option<&str>) -> Option<
         let read = table.records.iter().zip(&coordinates);
         check_range(table, joint, index, column, read.map(|(record, q)| (record.line, q[index])));
     }
-    Some(JointTable { q: coordinates, wrenches: forced.then_some(wrenches), column, warnings: Vec::new() })
+    Some(JointTable { q: coordinates, wrenches: forced.then_some(wrenches), column, rapids, warnings: Vec::new() })
 }
