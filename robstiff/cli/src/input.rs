@@ -22,7 +22,7 @@ pub use frames::{NamedFrame, RobotLanguage, blend, joint_speed, named_frame};
 pub use nominal::{moved, nominal};
 pub use options::{
     Force, above_zero, all_with_unit, axis, axis_name, force, length, margin, positive, seed, three_with_unit,
-    tool_axis, whole, with_unit,
+    tolerance, tool_axis, whole, with_unit,
 };
 pub use program::ProgramArguments;
 
@@ -238,6 +238,24 @@ mod tests {
         let noted = |q2: &str| outside_limits(&coordinates(&format!("90,{q2},0,0,0"), &robot).unwrap(), &robot);
         assert_eq!(noted("100 deg"), ["q2 = 100 deg is outside its limits [-90, 90] deg"]);
         assert_eq!(noted("-90 deg"), Vec::<String>::new());
+    }
+
+    #[test]
+    fn a_tolerance_may_be_a_grade() {
+        assert_eq!(tolerance("0.1 mm").unwrap(), 1e-4);
+        assert_eq!(tolerance("IT9 of 50 mm").unwrap(), 31e-6);
+        assert_eq!(tolerance(" it14 of 3.15 m").unwrap(), 2700e-6);
+        for (text, part) in [
+            ("IT9", "`IT9 of 50 mm`"),
+            ("ITx of 50 mm", "`IT9 of 50 mm`"),
+            ("IT3 of 50 mm", "IT6 to IT14"),
+            ("IT9 of 50", "no unit"),
+            ("IT9 of 4 m", "3150 mm"),
+            ("-1 mm", "above zero"),
+        ] {
+            let said = tolerance(text).unwrap_err();
+            assert!(said.contains(part), "{text}: {said}");
+        }
     }
 
     #[test]

@@ -7,6 +7,7 @@
 //! - [`engagement`]: what is cut where along a path, from the stock;
 //! - [`deviation`], [`compensation`]: how far a cut pushes the tool off a path, and the path that
 //!   makes up for it;
+//! - [`grade`]: tolerance grades;
 //! - [`online`]: correcting the joint targets while cutting;
 //! - [`cell`]: robot, spindle, tools and workpiece in one file;
 //! - [`program`]: programs of KUKA, ABB and FANUC controllers, written, read, and changed in place;
@@ -21,6 +22,7 @@ pub mod controller;
 pub mod deviation;
 pub mod engagement;
 mod golden;
+pub mod grade;
 pub mod inverse;
 pub mod map;
 pub mod milling;

@@ -1,6 +1,7 @@
 //! What single options give: quantities, axes, forces.
 
 use robstiff::nalgebra::{Unit, Vector3};
+use robstiff_machining::grade;
 use robstiff_robots::quantity::{self, Dimension};
 
 /// A quantity that an option gives. It carries its unit, since `0.1` is a tenth
@@ -70,6 +71,16 @@ fn is_of_number(c: char) -> bool {
 /// A length of either sign.
 pub fn length(text: &str) -> Result<f64, String> {
     with_unit(text, Dimension::Length)
+}
+
+/// How far from its place something may be, either way: a length, or half the zone of a tolerance grade, `IT9 of 50 mm`.
+pub fn tolerance(text: &str) -> Result<f64, String> {
+    let Some(rest) = text.trim().strip_prefix(['I', 'i']).and_then(|rest| rest.strip_prefix(['T', 't'])) else {
+        return positive(Dimension::Length)(text);
+    };
+    let said = rest.split_once(" of ").and_then(|(grade, size)| Some((grade.trim().parse().ok()?, size)));
+    let (grade, size) = said.ok_or("a grade has its nominal size behind it: `IT9 of 50 mm`")?;
+    Ok(0.5 * grade::width(grade, length(size)?)?)
 }
 
 /// A margin to limits in percent: less than half of the range at either end.

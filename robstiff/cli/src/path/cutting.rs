@@ -16,7 +16,7 @@ use robstiff_robots::quantity::Dimension;
 use super::doubts::{complain_of_size, lacks_wall};
 use super::stock::{Engaged, StockArguments, StockRequest};
 use crate::failure::Failure;
-use crate::input::{Setup, positive, tool_axis};
+use crate::input::{Setup, positive, tolerance, tool_axis};
 use crate::output::{self, Files};
 use crate::text::significant;
 use crate::{forces, input};
@@ -52,8 +52,8 @@ pub struct ForceArguments {
     /// without its sign
     #[arg(long, value_name = "AXIS", allow_hyphen_values = true, value_parser = tool_axis)]
     spindle_axis: Option<Unit<Vector3<f64>>>,
-    /// Say where the error of the surface is within this, e.g. "0.1 mm"
-    #[arg(long, value_name = "LENGTH", allow_hyphen_values = true, value_parser = positive(Dimension::Length))]
+    /// Say where the error of the surface is within this, either way, e.g. "0.1 mm" or "IT9 of 50 mm"
+    #[arg(long, value_name = "LENGTH", allow_hyphen_values = true, value_parser = tolerance)]
     tolerance: Option<f64>,
     /// Correct the path for the force: `--out` has what to command
     #[arg(long)]

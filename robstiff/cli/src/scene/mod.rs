@@ -10,7 +10,7 @@ use robstiff_identify::campaign::JointTable;
 use robstiff_robots::Description;
 
 use crate::failure::Failure;
-use crate::input::{Force, force, length};
+use crate::input::{Force, force, tolerance};
 use crate::output::{self, Files};
 use crate::text::{count, significant};
 use crate::{effect, input, json};
@@ -42,8 +42,8 @@ pub struct Arguments {
     /// The column of the path that colours it; the deviation under the force where left out
     #[arg(long, value_name = "NAME", requires = "path", conflicts_with_all = ["campaign", "at"])]
     column: Option<String>,
-    /// How large what colours the poses may be, either way, e.g. "0.1 mm": marked on the scale, with pass or fail at the top
-    #[arg(long, value_name = "LENGTH", conflicts_with = "at", value_parser = length)]
+    /// How large what colours the poses may be, either way, e.g. "0.1 mm" or "IT9 of 50 mm": marked on the scale, with pass or fail at the top
+    #[arg(long, value_name = "LENGTH", conflicts_with = "at", value_parser = tolerance)]
     tolerance: Option<f64>,
     /// The page
     #[arg(long, value_name = "PAGE.html")]

@@ -9,7 +9,7 @@ use std::vec::Vec;
 
 use robstiff_robots::quantity::Dimension;
 use robstiff_robots::words::count;
-use robstiff_robots::{Description, Joint};
+use robstiff_robots::{Controller, Description, Joint};
 
 use super::beyond::{Usual, warn_of};
 use robstiff::JointKind;
@@ -47,6 +47,8 @@ pub struct Columns {
     /// Whether visits are numbered within each pose.
     within_pose: bool,
     q: Vec<Numbers>,
+    /// How joint coordinates follow from these, where they are what the pendant shows.
+    pendant: Option<Controller>,
 }
 
 /// Ids in order of appearance, each with the row that first named it.
@@ -71,12 +73,23 @@ impl Columns {
     pub fn find(table: &Table<'_>, robot: &Description) -> Option<Self> {
         let pose = table.require_name("pose");
         let visit = table.position("visit");
-        let coordinate = |(i, joint): (usize, &Joint)| table.require(&format!("q{}", i + 1), dimension_of(joint.kind));
+        let of_pendant = table.position("q1").is_none() && table.position("t1").is_some();
+        let pendant = robot.controller.clone().filter(|_| of_pendant);
+        if of_pendant && pendant.is_none() {
+            table.report_header(
+                "`t1` .. are what the pendant shows, and the robot's description does not say how joint coordinates follow from it",
+                "call them `q1` .. if they are the joint coordinates, or add `controller:` to the description",
+            );
+            return None;
+        }
+        let letter = if of_pendant { 't' } else { 'q' };
+        let coordinate =
+            |(i, joint): (usize, &Joint)| table.require(&format!("{letter}{}", i + 1), dimension_of(joint.kind));
         // Collected twice so that every missing column is reported, not the first.
         let q: Vec<Option<Numbers>> = robot.joints.iter().enumerate().map(coordinate).collect();
         let q: Vec<Numbers> = q.into_iter().collect::<Option<_>>()?;
         // Another robot's loads can be fitted to this one, and what comes of it looks like a result.
-        let beyond = format!("q{}", q.len() + 1);
+        let beyond = format!("{letter}{}", q.len() + 1);
         if table.position(&beyond).is_some() {
             let joints = count(q.len(), "joint");
             table.warn(&format!(
@@ -86,7 +99,7 @@ impl Columns {
         }
         let pose = pose?;
         let within_pose = visit.is_some_and(|visit| counts_within_poses(table, pose, visit));
-        Some(Self { pose, visit, within_pose, q })
+        Some(Self { pose, visit, within_pose, q, pendant })
     }
 
     /// What names a row's visit, where there is a column of them: its id, behind that of its pose
@@ -98,8 +111,12 @@ impl Columns {
 
     /// The joint coordinates of a row; every number is checked before any gives it up.
     pub fn coordinates(&self, table: &Table<'_>, record: &Record) -> Option<Vec<f64>> {
-        let q: Vec<Option<f64>> = self.q.iter().map(|&column| table.number(record, column)).collect();
-        q.into_iter().collect()
+        let read: Vec<Option<f64>> = self.q.iter().map(|&column| table.number(record, column)).collect();
+        let read: Vec<f64> = read.into_iter().collect::<Option<_>>()?;
+        Some(match &self.pendant {
+            Some(pendant) => pendant.pendant_to_q(&read),
+            None => read,
+        })
     }
 
     /// Warns of coordinates that joints do not reach.

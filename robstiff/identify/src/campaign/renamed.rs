@@ -47,8 +47,8 @@ const COLUMNS: [&str; 24] = [
     "deflection",
 ];
 
-/// What joints' columns begin with: coordinates, and what encoders and motors read.
-const OF_JOINTS: [char; 3] = ['q', 'j', 'm'];
+/// What joints' columns begin with: coordinates, what the pendant shows, and what encoders and motors read.
+const OF_JOINTS: [char; 4] = ['q', 't', 'j', 'm'];
 
 fn is_column(key: &str) -> bool {
     let of_joint = || key.strip_prefix(OF_JOINTS).and_then(|number| number.parse::<usize>().ok());

@@ -162,3 +162,19 @@ fn two_axes_of_three_or_one_with_a_slip_of_the_pen_are_no_dial_gauge() {
     let table = "pose,q1 [deg],q2,Fx,Fy,Fz,dX,DY,dz\na,90,0.5,1,2,3,1,2,3\n";
     assert_eq!(problems(CAMPAIGN, table).len(), 2);
 }
+
+#[test]
+fn what_the_pendant_shows_becomes_joint_coordinates() {
+    let table = "pose,t1 [deg],t2,Fx,Fy,Fz,dx,dy,dz\na,90,0.5,1,2,3,1,2,3\n";
+    let folder = Folder::new(CAMPAIGN, table);
+    let told = folder.read().expect_err("the description has no controller").to_string();
+    assert!(told.contains("`t1` .. are what the pendant shows") && told.contains("`controller:`"), "{told}");
+    // The second counts from the ground, backwards, and shows 0 at 0.1 rad.
+    let robot = folder.0.join("robot.yaml");
+    let controller = "controller:\n  joints: [{}, {sign: -1, offset: 0.1 rad, add: {t1: 1}}]\n";
+    std::fs::write(&robot, std::fs::read_to_string(&robot).unwrap() + controller).unwrap();
+    let read = folder.read().unwrap_or_else(|problems| panic!("{problems}"));
+    let Data::Displacement(data) = read.data else { panic!("kind displacement") };
+    let quarter = core::f64::consts::FRAC_PI_2;
+    assert_eq!(data.rows[0].q, [quarter, 0.1 - (0.5 + quarter)]);
+}
