@@ -21,7 +21,7 @@ pub use cell::{Asked, CellArgument, Opened, Setup};
 pub use frames::{NamedFrame, RobotLanguage, blend, joint_speed, named_frame};
 pub use nominal::{moved, nominal};
 pub use options::{
-    Force, above_zero, all_with_unit, axis, axis_name, force, length, margin, positive, seed, three_with_unit,
+    Force, above_zero, all_with_unit, axis, axis_name, force, length, margin, positive, ratio, seed, three_with_unit,
     tolerance, tool_axis, whole, with_unit,
 };
 pub use program::ProgramArguments;

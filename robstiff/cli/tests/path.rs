@@ -203,3 +203,41 @@ fn a_tolerance_is_told_of_the_points_that_have_an_error() {
     assert!(page.contains("holds at the 3 of 5 points judged\n"), "{page}");
     assert_eq!(held["holds"], true);
 }
+
+/// What `stability` says in one pose is what `path` says at that place.
+#[test]
+fn chatter_along_a_path_is_that_of_each_pose() {
+    let folder = folder("path-chatter");
+    let [path, told, limits, modes, cut] =
+        ["path.csv", "told.json", "limits.json", "modes.yaml", "cut.yaml"].map(|name| inside(&folder, name));
+    let docs = |file: &str| {
+        let files = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/commands/files");
+        fs::read_to_string(files.join(file)).unwrap()
+    };
+    fs::write(&modes, docs("modes.yaml")).unwrap();
+    let points: String = (0..4).map(|k| format!("{},0,600,0,0,-1\n", 1500 + 20 * k)).collect();
+    fs::write(&path, format!("x [mm],y [mm],z [mm],ux,uy,uz\n{points}")).unwrap();
+    let robot = "kuka-kr270-r2700";
+    let along = |depth: &str| {
+        fs::write(&cut, docs("roughing.yaml").replace("depth: 2 mm", &format!("depth: {depth}"))).unwrap();
+        let arguments = ["path", robot, &path, "--tool-axis", "x", "--cut", &cut, "--modes", &modes, "--json", &told];
+        (succeed(&arguments), json(&told))
+    };
+    let (said, shallow) = along("2 mm");
+    assert!(said.contains("The arm chatters at none of 4 places"), "{said}");
+    let q: Vec<String> = shallow["points"][1]["q"].as_array().unwrap().iter().map(ToString::to_string).collect();
+    let at = ["stability", robot, &cut, "--at", &q.join(","), "--tool-axis", "x", "--modes", &modes, "--json", &limits];
+    succeed(&at);
+    // The first feed is along x of the base frame.
+    let limit = json(&limits)["feeds"][0]["limiting_depth_m"].as_f64().unwrap();
+    let place = |told: &serde_json::Value| told["chatter"]["places"][1].clone();
+    assert!((place(&shallow)["margin"].as_f64().unwrap() * 2e-3 / limit - 1.0).abs() < 1e-6, "{limit}");
+    let (said, deep) = along("6 mm");
+    assert!(said.contains("The arm chatters at 4 of 4 places, 60 of 60 mm"), "{said}");
+    assert!((place(&deep)["margin"].as_f64().unwrap() * 6e-3 / limit - 1.0).abs() < 1e-6, "{deep}");
+    assert!(place(&deep)["mended_rad_per_s"].as_f64().unwrap() > 9000.0 * core::f64::consts::TAU / 60.0);
+
+    let no_masses = ["path", robot, &path, "--tool-axis", "x", "--cut", &cut, "--damping", "0.02"];
+    assert!(fail(1, &no_masses).contains("--modes MODES.yaml"));
+    assert!(fail(2, &["path", robot, &path, "--tool-axis", "x", "--modes", &modes]).contains("--modes needs a force"));
+}

@@ -83,6 +83,12 @@ pub fn tolerance(text: &str) -> Result<f64, String> {
     Ok(0.5 * grade::width(grade, length(size)?)?)
 }
 
+/// A ratio from 0 to below 1.
+pub fn ratio(text: &str) -> Result<f64, String> {
+    let ratio = quantity::parse(text, Dimension::Number).map_err(|error| error.to_string())?;
+    if (0.0..1.0).contains(&ratio) { Ok(ratio) } else { Err("a ratio from 0 to below 1 is expected here".to_owned()) }
+}
+
 /// A margin to limits in percent: less than half of the range at either end.
 pub fn margin(text: &str) -> Result<f64, String> {
     let number = text.trim().trim_end_matches('%').trim().parse::<f64>();

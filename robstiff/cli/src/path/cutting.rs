@@ -11,12 +11,12 @@ use robstiff_machining::deviation::{
 use robstiff_machining::engagement::Stock;
 use robstiff_machining::milling::{Cut, CutFile, ForceFrame, Forces};
 use robstiff_machining::path::{SolvedPath, ToolPath};
-use robstiff_robots::quantity::Dimension;
 
+use super::chatter::{Chatter, ChatterArguments, ChatterRequest};
 use super::doubts::{complain_of_size, lacks_wall};
 use super::stock::{Engaged, StockArguments, StockRequest};
 use crate::failure::Failure;
-use crate::input::{Setup, positive, tolerance, tool_axis};
+use crate::input::{Setup, tolerance, tool_axis};
 use crate::output::{self, Files};
 use crate::text::significant;
 use crate::{forces, input};
@@ -60,6 +60,8 @@ pub struct ForceArguments {
     compensate: bool,
     #[command(flatten)]
     stock: StockArguments,
+    #[command(flatten)]
+    chatter: ChatterArguments,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
@@ -92,6 +94,7 @@ pub struct CuttingRequest {
     tolerance: Option<f64>,
     compensate: bool,
     stock: StockRequest,
+    chatter: Option<ChatterRequest>,
 }
 
 /// What the forces do, whatever the number of joints.
@@ -116,6 +119,8 @@ pub struct Cutting {
     pub compared: Option<[Compared; 2]>,
     /// The corrected path.
     pub corrected: Option<Corrected>,
+    /// Where the arm chatters, where that is asked.
+    pub chatter: Option<Chatter>,
 }
 
 /// A cut among others.
@@ -199,6 +204,7 @@ impl ForceArguments {
                     ("--peak", self.peak),
                     ("--stock", self.stock.is_given()[0]),
                     ("--cut-of", self.stock.is_given()[1]),
+                    (self.chatter.asked().unwrap_or_default(), self.chatter.asked().is_some()),
                 ];
                 return match asked.iter().find(|(_, asked)| *asked) {
                     Some((name, _)) => Err(Failure::Usage(format!(
@@ -218,7 +224,13 @@ impl ForceArguments {
         let of_cell = setup.cell().filter(|_| has_tool).and_then(|cell| cell.stock);
         let of_cell = of_cell.and_then(|[from, to]| Stock::of_corners(&from, &to));
         let stock = self.stock.read(of_cell, place, files)?;
-        Ok(Some(CuttingRequest { source, name, against, peak, surface, axis, tolerance, compensate, stock }))
+        let chatter = self.chatter.read(setup, files)?;
+        if let (Some(name), false) = (self.chatter.asked(), has_tool) {
+            return Err(Failure::Usage(format!(
+                "{name}: a measured force does not say how it changes with the chip; give the cut with tool and material"
+            )));
+        }
+        Ok(Some(CuttingRequest { source, name, against, peak, surface, axis, tolerance, compensate, stock, chatter }))
     }
 }
 
@@ -285,6 +297,13 @@ impl CuttingRequest {
             _ => None,
         };
         let corrected = if self.compensate { Some(self.correct(robot, path, solved, &load)?) } else { None };
+        let chatter = match (&self.chatter, &self.source) {
+            (Some(request), Source::Cut(file)) => {
+                let operation = self.operation(file, path, engaged.as_ref());
+                Some(request.compute(robot, (path, solved), &operation, self.axis)?)
+            }
+            _ => None,
+        };
         // A cut's width says nothing where the stock does.
         complain_of_size(&self.name, forces.filter(|_| !self.stock.is_asked(path)), &deviation);
         Ok(Cutting {
@@ -298,6 +317,7 @@ impl CuttingRequest {
             blame,
             compared,
             corrected,
+            chatter,
         })
     }
 

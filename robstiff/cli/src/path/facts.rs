@@ -9,6 +9,7 @@ use robstiff_machining::engagement::Stock;
 use robstiff_machining::path::ToolPath;
 use robstiff_robots::{Description, JointKind};
 
+use super::chatter::Chatter;
 use super::cutting::{Corrected, Cutting, WRONG};
 use super::job::content::{Block, Job, Joint, Left, Point};
 use super::stock::Engaged;
@@ -47,6 +48,9 @@ impl Facts<'_> {
             corrected: cutting.zip(corrected).map(|(cutting, corrected)| left(cutting, corrected)),
             shares: cutting.map(|cutting| cutting.blame.clone()).unwrap_or_default(),
             summary: cutting.map(|cutting| summary(cutting, corrected)).unwrap_or_default(),
+            chatter: cutting
+                .and_then(|cutting| cutting.chatter.as_ref())
+                .map(|chatter| (chatter.said(), chatter.worst().into_iter().map(Chatter::row).collect())),
             files: self.files.clone(),
         }
     }

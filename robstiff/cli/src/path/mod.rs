@@ -1,6 +1,7 @@
 //! `robstiff path`: the joint coordinates of a tool path, how far forces push the
 //! tool off it, and what to command instead.
 
+mod chatter;
 pub mod cutting;
 pub mod deviation;
 mod doubts;
@@ -26,6 +27,7 @@ use crate::failure::Failure;
 use crate::output::{self, Files};
 use crate::text::{Table, cell, count, decimals};
 use crate::{input, json};
+use chatter::Chatter;
 use cutting::{Cutting, CuttingRequest};
 use robot_program::RobotProgramArguments;
 
@@ -281,6 +283,7 @@ fn page(robot: &Description, file: &str, solved: &Solved, axis: Option<String>) 
     }
     if let Some(cutting) = &solved.cutting {
         page += &deviation::page(cutting);
+        page += &cutting.chatter.as_ref().map(Chatter::page).unwrap_or_default();
     }
     page
 }
@@ -361,6 +364,9 @@ fn document(robot: &Description, solved: &Solved) -> Value {
     });
     if let Some(cutting) = &solved.cutting {
         document["deviation"] = deviation::document(cutting);
+        if let Some(chatter) = &cutting.chatter {
+            document["chatter"] = chatter.document();
+        }
     }
     document
 }

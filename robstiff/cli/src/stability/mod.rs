@@ -14,11 +14,11 @@ use robstiff::nalgebra::{Matrix3, SVector, Unit, Vector3, Vector6};
 use robstiff_machining::milling::{Cut, Forces};
 use robstiff_machining::stability::{FeedLimit, Modes, ModesFile, mass_of_first_mode, over_feeds};
 use robstiff_robots::Description;
-use robstiff_robots::quantity::{self, Dimension};
+use robstiff_robots::quantity::Dimension;
 use serde_json::{Value, json};
 
 use crate::failure::Failure;
-use crate::input::{Setup, axis, positive, whole};
+use crate::input::{Setup, axis, positive, ratio, whole};
 use crate::output::{self, Files};
 use crate::{forces, input, json};
 use lobes::Lobe;
@@ -72,11 +72,6 @@ pub struct Arguments {
     /// Write the same as JSON to FILE
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
-}
-
-fn ratio(text: &str) -> Result<f64, String> {
-    let ratio = quantity::parse(text, Dimension::Number).map_err(|error| error.to_string())?;
-    if (0.0..1.0).contains(&ratio) { Ok(ratio) } else { Err("a ratio from 0 to below 1 is expected here".to_owned()) }
 }
 
 /// A compliance that changes by less is the same.

@@ -5,10 +5,11 @@ use std::sync::Arc;
 use nalgebra::{Matrix3, Unit, Vector3, Vector6};
 
 use super::{Contact, Load, Revolutions, Surface, width};
-use crate::engagement::{Bite, Met, Stretch, Survey};
+use crate::engagement::{Bite, Met, Sector, Stretch, Survey};
 use crate::milling::{Cut, CutFrame, Direction, Engagement, Forces};
 use crate::path::follow::MOST_SHOWN;
 use crate::path::{PathPoint, SolvedPath, ToolPath, Waypoint};
+use crate::stability::along::Cutting;
 use robstiff_robots::Diagnostics;
 
 /// Width and depth change by this share of themselves for the slope of the force.
@@ -197,6 +198,29 @@ impl Operation<'_> {
             Forces::Measured { .. } => None,
         };
         point.feed.filter(|_| self.at_feeds).or(of_cut)
+    }
+
+    /// What is cut along a path, where the model says it and somebody knows the speed of the spindle: at each point
+    /// what is met where the mean force is largest on the way there.
+    pub fn cutting<const N: usize>(&self, path: &SolvedPath<N>, axis: Unit<Vector3<f64>>) -> Vec<Cutting<N>> {
+        let mut before = None;
+        let cutting = path.points.iter().enumerate().filter_map(|(i, point)| {
+            let length = before.replace(point.s).map_or(0.0, |before| point.s - before);
+            let forces = self.forces_of(point.tool);
+            let Forces::Model(cut) = forces else { return None };
+            let at = self.met(i, point, forces);
+            if point.rapid || matches!(at, At::Air | At::Undirected) {
+                return None;
+            }
+            let speed = point.spindle.map(f64::abs).filter(|speed| *speed > 0.0).or(cut.speed)?;
+            let cut = with_feed(cut, self.feed_per_tooth(cut, point));
+            let bite = worst(&cut, &at)?;
+            let frame = contact(point, axis, Surface::Side, 1.0).frame?;
+            let of_sector = |sector: &Sector| Cut { engagement: sector.engagement, depth: sector.depth, ..cut.clone() };
+            let cuts: Vec<Cut> = bite.sectors.iter().map(of_sector).collect();
+            (!cuts.is_empty()).then_some(Cutting { point: i, q: point.q, frame, cuts, speed, length })
+        });
+        cutting.collect()
     }
 
     fn forces_of(&self, tool: Option<u32>) -> &Forces {

@@ -36,6 +36,7 @@
 //!
 //! Forces are on the tool, lengths in m, masses in kg, times in s, all in the base frame.
 
+pub mod along;
 #[cfg(test)]
 mod delay_tests;
 mod feeds;

@@ -22,6 +22,9 @@ pub struct Job<'a> {
     pub corrected: Option<Left>,
     /// Which share of the error comes from which joint or effect, the largest first.
     pub shares: Vec<(String, f64)>,
+    /// Where the arm chatters, in a sentence without its full stop, and of the worst places line, speed (rpm), margin and
+    /// the speed that mends it (rpm); where that is asked.
+    pub chatter: Option<(String, Vec<[String; 4]>)>,
     /// Rows of mean, root of the mean square and worst (m), each with what it is of.
     pub summary: Vec<(String, [f64; 3])>,
     /// The program's files.

@@ -31,6 +31,7 @@ pub fn html(job: &Job<'_>) -> String {
         along(job),
         places(job, &worst),
         before_and_after(job),
+        chatter(job),
         joints(job, &travels),
         help(job, &travels),
         footer(job),
@@ -212,6 +213,24 @@ fn before_and_after(job: &Job<'_>) -> String {
     element("section", format!("{}{}{}", text("h2", title), table.html(), text("p", note)))
 }
 
+fn chatter(job: &Job<'_>) -> String {
+    let Some((said, worst)) = &job.chatter else { return String::new() };
+    let mut table = Table::new([
+        number("line"),
+        number("speed [rpm]"),
+        number("stable up to, of its depth"),
+        number("stable at [rpm]"),
+    ]);
+    for row in worst {
+        table.row(false, row.iter().map(|cell| number(cell.clone())));
+    }
+    let table = if worst.is_empty() { String::new() } else { table.html() };
+    element(
+        "section",
+        format!("{}{}{table}", text("h2", "Chatter"), text("p", &format!("{}.", crate::text::capital(said)))),
+    )
+}
+
 fn joints(job: &Job<'_>, travels: &[Travel]) -> String {
     let mut table = Table::new([
         words(""),
@@ -272,7 +291,9 @@ fn footer(job: &Job<'_>) -> String {
     if !job.files.is_empty() {
         said += &format!("The program: {}. ", job.files.join(", "));
     }
-    said +=
-        "All figures are static: mean forces or those of a revolution as if they stayed. Chatter is another matter.";
+    said += "Deviations and forces are static: mean forces, or those of a revolution as if they stayed.";
+    if job.chatter.is_none() {
+        said += " Whether the arm chatters was not asked: --damping or --modes.";
+    }
     element("footer", text("p", &said))
 }

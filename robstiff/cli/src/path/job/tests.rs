@@ -39,6 +39,7 @@ fn job(q: &[[f64; 2]]) -> Job<'_> {
         tolerance: Some(100e-6),
         corrected: None,
         shares: vec![("joint 2".to_owned(), 0.6), ("link_compliance@link 3".to_owned(), 0.3)],
+        chatter: None,
         summary: vec![("error of the wall".to_owned(), [1e-5, 2e-5, -8e-5])],
         files: vec!["part.src".to_owned()],
     }
