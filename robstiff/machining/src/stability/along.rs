@@ -101,7 +101,8 @@ pub fn thinned<const N: usize>(cutting: Vec<Cutting<N>>, most: usize) -> Vec<Cut
     let whole: f64 = cutting.iter().map(|of| of.length).sum();
     let (mut thinned, mut so_far): (Vec<(usize, f64, Cutting<N>)>, f64) = (Vec::new(), 0.0);
     for of in cutting {
-        let stretch = (most as f64 * so_far / whole.max(f64::MIN_POSITIVE)) as usize;
+        let middle = so_far + 0.5 * of.length;
+        let stretch = (most as f64 * middle / whole.max(f64::MIN_POSITIVE)) as usize;
         so_far += of.length;
         let size = of.process().norm();
         match thinned.last_mut().filter(|(known, ..)| *known == stretch.min(most - 1)) {
