@@ -12,6 +12,7 @@ mod clock;
 #[cfg(test)]
 mod clock_tests;
 mod displacements;
+pub(crate) mod holdout;
 mod joints;
 #[cfg(test)]
 pub(crate) mod made;

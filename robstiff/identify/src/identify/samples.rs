@@ -9,9 +9,9 @@ use robstiff_robots::Description;
 use robstiff_robots::effect::physics::PLAYS;
 
 use super::column::Column;
-use super::encoders::Encoders;
 use super::setup::Setup;
 use crate::campaign::{Displacements, Frame};
+use crate::observe::encoders::Encoders;
 use robstiff::elements::{Geometry, Pose, Spring, Torque, turn};
 use robstiff::{Effect, JointKind, Robot};
 

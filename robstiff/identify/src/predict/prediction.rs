@@ -1,8 +1,6 @@
 //! The error of a description, row by row.
 
-use std::vec::Vec;
-
-use super::Error;
+use crate::identify::Error;
 
 /// The error of a description on a campaign. An error is the length of a row's
 /// residual over `sqrt(3)`, throughout, so that it compares with
