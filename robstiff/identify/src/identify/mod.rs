@@ -27,7 +27,6 @@ pub(crate) mod readable;
 pub(crate) mod samples;
 pub(crate) mod scale;
 pub(crate) mod second_order;
-pub(crate) mod setup;
 #[cfg(test)]
 mod tests;
 #[cfg(test)]

@@ -200,6 +200,11 @@ impl<'c> Displacement<'c> {
         }
     }
 
+    /// What laws of joints need to know of all rows.
+    pub fn sequence(&self) -> &Sequence {
+        &self.sequence
+    }
+
     /// A vector as it is read at a row, in the base frame.
     pub fn in_base(&self, row: usize, read: &Vector3<f64>) -> Vector3<f64> {
         self.world.rig.in_base(read, &self.declared[self.station[row]].tcp)
