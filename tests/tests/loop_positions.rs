@@ -5,7 +5,7 @@
 //! of 1 in 1000.
 
 use robstiff_identify::campaign::{Campaign, Data};
-use robstiff_identify::identify::predict;
+use robstiff_identify::predict::predict;
 use robstiff_identify::trace::{EffectParameter, Options, Trace, Verdict, trace};
 use robstiff_robots::{Description, Effect, Link};
 use robstiff_tests::judge_tracing::{Told, suspected};

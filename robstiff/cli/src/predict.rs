@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 use std::path::PathBuf;
 
 use robstiff_identify::campaign::{Campaign, Data};
-use robstiff_identify::identify::{PredictedRow, Prediction, predict};
+use robstiff_identify::predict::{PredictedRow, Prediction, predict};
 use serde_json::json;
 
 use crate::failure::Failure;

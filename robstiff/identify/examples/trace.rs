@@ -6,7 +6,7 @@ use std::error::Error;
 use std::path::Path;
 
 use robstiff_identify::campaign::Campaign;
-use robstiff_identify::identify::predict;
+use robstiff_identify::predict::predict;
 use robstiff_identify::trace::{Options, trace};
 
 fn main() -> Result<(), Box<dyn Error>> {

@@ -2,6 +2,7 @@
 //!
 //! - [`campaign`]: the files: loads and what moved, absolute positions, clamped axes;
 //! - [`triage`]: what the readings say without a model;
+//! - [`predict`]: what a description says that they should be;
 //! - [`identify`]: the joint compliances that fit them;
 //! - [`trace`]: the effects that they show to be missing;
 //! - [`plan`], [`simulate`]: what to measure next, and campaigns on an arm that hides something,
@@ -22,6 +23,7 @@ mod judge;
 mod model;
 mod observe;
 pub mod plan;
+pub mod predict;
 mod probability;
 mod regression;
 mod rounded;

@@ -3,7 +3,8 @@
 use std::fs;
 
 use robstiff_identify::campaign::{Campaign, Data};
-use robstiff_identify::identify::{identify, predict};
+use robstiff_identify::identify::identify;
+use robstiff_identify::predict::predict;
 use robstiff_identify::triage::triage;
 
 use super::accepted::{assert_same, with_line_breaks_of_windows};

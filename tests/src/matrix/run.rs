@@ -5,7 +5,7 @@ use std::time::Instant;
 use std::{env, fs, process, thread};
 
 use robstiff_identify::campaign::Campaign;
-use robstiff_identify::identify::predict;
+use robstiff_identify::predict::predict;
 use robstiff_identify::trace::{Options, Trace, Verdict, trace};
 use robstiff_robots::Description;
 

@@ -4,7 +4,7 @@ use robstiff::analysis::principal_directions;
 use robstiff::nalgebra::{Matrix4, SVector, Vector3, Vector6};
 use robstiff::{Convention, Generic, JointKind, Robot, State};
 use robstiff_identify::campaign::{Campaign, Data};
-use robstiff_identify::identify::{PredictedRow, predict};
+use robstiff_identify::predict::{PredictedRow, predict};
 use robstiff_robots::quantity::{self, Dimension};
 use robstiff_robots::{Description, Joint};
 use serde_json::{Value, json};

@@ -2,7 +2,7 @@
 
 use robstiff::JointKind;
 use robstiff_identify::campaign::{Campaign, Data};
-use robstiff_identify::identify::predict;
+use robstiff_identify::predict::predict;
 use robstiff_identify::trace::{RowResidual, Trace, Verdict};
 
 use super::numbers;

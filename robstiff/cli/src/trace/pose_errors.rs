@@ -1,7 +1,8 @@
 //! The errors of every pose, or of every clamped axis, and what the effects add there.
 
 use robstiff_identify::campaign::{Campaign, ClampedRow, Data};
-use robstiff_identify::identify::{predict, without_laws};
+use robstiff_identify::identify::without_laws;
+use robstiff_identify::predict::predict;
 use robstiff_identify::trace::Trace;
 use robstiff_robots::Description;
 

@@ -121,7 +121,8 @@ fn of_numbers<'a>(numbers: impl IntoIterator<Item = &'a f64>) -> Option<String> 
 mod tests {
     use super::super::made::Plan;
     use super::*;
-    use crate::identify::{Error, identify, predict};
+    use crate::identify::{Error, identify};
+    use crate::predict::predict;
     use crate::trace::{Options, trace};
 
     /// What is wrong with a campaign of which one row was changed.

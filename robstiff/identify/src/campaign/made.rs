@@ -1,5 +1,5 @@
-//! Campaigns for tests, made from the regression's own columns: what is tested
-//! with them is the statistics, not the mechanics.
+//! Campaigns for tests, of the model that is fitted to them: what is tested with them is the statistics,
+//! not the mechanics.
 
 use std::format;
 use std::string::{String, ToString};
@@ -11,19 +11,20 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use robstiff_robots::Description;
 
-use super::{Campaign, Data, Displacements, Frame, Noise, Observation};
-use crate::identify::baseline::declared;
-use crate::identify::column::Column;
-use crate::identify::samples::Samples;
-use crate::identify::second_order::beyond_linear;
+use super::{Campaign, Data, Displacements, Frame, Noise, Observation as Row};
+use crate::model::Arm;
+use crate::observe::displacement::Displacement;
+use crate::observe::{Observation, as_declared};
 use crate::probability::normal;
+use robstiff::Effect;
 use robstiff_robots::samples::five_axis;
 
 /// What is measured, and how well.
 #[derive(Clone)]
 pub struct Plan {
     pub robot: Description,
-    pub hidden: Vec<(Column, f64)>,
+    /// What the description lacks.
+    pub hidden: Vec<Effect>,
     pub poses: usize,
     pub visits: usize,
     /// The loads of a visit as shares of its greatest.
@@ -73,17 +74,17 @@ impl Plan {
 
     /// Measures; `disturb` changes a row with its exact reading, in the base
     /// frame, before noise comes to it.
-    pub fn run_with(&self, mut disturb: impl FnMut(usize, &mut Observation)) -> Campaign {
+    pub fn run_with(&self, mut disturb: impl FnMut(usize, &mut Row)) -> Campaign {
         let mut random = ChaCha8Rng::seed_from_u64(self.seed);
         let mut data = self.loaded(&mut random);
-        let (samples, exact) = self.exact(&data);
-        let axes = samples.axes;
+        let exact = self.exact(&data);
+        let axes = if self.rotation_noise.is_some() { 6 } else { 3 };
         for (i, row) in data.rows.iter_mut().enumerate() {
             row.displacement = core::array::from_fn(|k| exact[axes * i + k]);
             row.rotation = row.rotation.map(|_| core::array::from_fn(|k| exact[axes * i + 3 + k]));
             disturb(i, row);
         }
-        self.read(&mut data, &samples, &mut random);
+        self.read(&mut data, &mut random);
         campaign(self.robot.clone(), Data::Displacement(data))
     }
 
@@ -115,7 +116,7 @@ impl Plan {
             };
             for share in &self.ramp {
                 let line = data.rows.len() + 2;
-                data.rows.push(Observation {
+                data.rows.push(Row {
                     line,
                     pose,
                     visit,
@@ -134,30 +135,28 @@ impl Plan {
     }
 
     /// What the rows are exactly, in the base frame, stacked (m, rad).
-    fn exact(&self, data: &Displacements) -> (Samples, DVector<f64>) {
+    fn exact(&self, data: &Displacements) -> DVector<f64> {
         let mut acting = data.clone();
         for row in &mut acting.rows {
             let [x, y, z, mx, my, mz] = row.wrench;
             let [x, y, z] = (self.acts)(Vector3::new(x, y, z)).into();
             row.wrench = [x, y, z, mx, my, mz];
         }
-        let samples = Samples::of_description(&self.robot, &acting);
-        let mut exact = DVector::zeros(samples.axes * data.rows.len());
-        let own = declared(&self.robot).into_iter().map(|number| (number.column, number.value));
-        for (column, value) in own.chain(self.hidden.iter().copied()) {
-            exact.axpy(value, &samples.column(column), 1.0);
-        }
-        let joints: Vec<f64> = self.robot.joints.iter().map(robstiff_robots::Joint::compliance).collect();
-        exact += beyond_linear(&samples, &joints);
-        (samples, exact)
+        let mut truth = self.robot.clone();
+        truth.effects.extend(self.hidden.iter().copied());
+        let observation = Displacement::new(&truth, &acting);
+        as_declared(&observation, observation.world(), &truth)
     }
 
     /// Turns exact rows into the frame they are read in, and adds noise.
-    fn read(&self, data: &mut Displacements, samples: &Samples, random: &mut ChaCha8Rng) {
+    fn read(&self, data: &mut Displacements, random: &mut ChaCha8Rng) {
+        let arm = Arm::of(&self.robot);
         let mut unloaded = [[0.0; 3]; 2];
         for (i, row) in data.rows.iter_mut().enumerate() {
-            let tool: Matrix3<f64> = samples.rows[i].tcp.fixed_view::<3, 3>(0, 0).into_owned();
-            let turn = if self.measured_frame == Frame::Tool { tool.transpose() } else { Matrix3::identity() };
+            let turn = match self.measured_frame {
+                Frame::Base => Matrix3::identity(),
+                Frame::Tool => arm.stand(&row.q, &[]).tcp.turn.transpose(),
+            };
             let mut reading = || {
                 let turns = self.rotation_noise.unwrap_or_default();
                 [self.noise, turns].map(|sigma| sigma.map(|sigma| sigma * normal(random)))

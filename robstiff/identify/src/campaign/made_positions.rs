@@ -5,15 +5,14 @@ use std::format;
 use std::vec;
 use std::vec::Vec;
 
-use nalgebra::{Rotation3, Vector3};
+use nalgebra::{Isometry3, Vector3};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use robstiff_robots::Description;
 
 use super::made::campaign;
 use super::{Campaign, Data, Noise, PositionRow, Positions};
-use crate::identify::positions::model::Model;
-use crate::identify::positions::registration::Registration;
+use crate::observe::position::Position;
 use crate::probability::normal;
 use robstiff::Effect;
 
@@ -86,17 +85,20 @@ impl Plan {
         }
         let mut truth = self.robot.clone();
         truth.effects.extend(self.hidden.iter().copied());
-        let mut model = Model::new(&truth, &data);
-        model.marker += Vector3::from(self.marker);
-        let points = model.points(&data);
+        let points = {
+            let mut read = data.clone();
+            read.measured_at.iter_mut().zip(self.marker).for_each(|(at, off)| *at += off);
+            Position::new(&truth, &read).points(&truth)
+        };
         let mut three = |sigma: f64| Vector3::from_fn(|_, _| sigma * normal(&mut random));
-        let tracker = Registration { turn: Rotation3::new(three(1.0)), at: three(3.0) };
+        let turn = three(1.0);
+        let tracker = Isometry3::new(three(3.0), turn);
         let mut comes_to = Vector3::zeros();
         for (i, row) in data.rows.iter_mut().enumerate() {
             if i % self.payloads.len() == 0 {
                 comes_to = three(self.repeatability);
             }
-            row.position = tracker.placed(&(points[i] + comes_to)).into();
+            row.position = tracker.transform_point(&(points[i] + comes_to).into()).coords.into();
             disturb(i, row);
             row.position = (Vector3::from(row.position) + three(self.noise)).into();
         }

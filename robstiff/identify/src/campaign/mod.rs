@@ -13,6 +13,7 @@ mod clock;
 mod clock_tests;
 mod displacements;
 mod gauges;
+pub(crate) mod holdout;
 mod joints;
 #[cfg(test)]
 pub(crate) mod made;

@@ -24,10 +24,7 @@ fn offer(scene: &Scene<'_>, offers: &mut Offers) {
         return;
     }
     let (weight, kinds, compliance) = (scene.weight.clone(), scene.kinds.clone(), scene.compliance.clone());
-    let turning = scene.turning();
-    let of = move |at: &At<'_>, joint: usize| {
-        if turning.contains(&joint) { compliance[joint - 1] * weight.torque(at.stand, &kinds, joint - 1) } else { 0.0 }
-    };
+    let of = move |at: &At<'_>, joint: usize| compliance[joint - 1] * weight.torque(at.stand, &kinds, joint - 1);
     let share = Parameter::new("share", "1", Size::Of(1.0), Term::Asides(Rc::new(of))).nonnegative();
     offers.add(Part::Robot, vec![Form::new("", vec![share]).written(|v| vec![Effect::GravitySag { share: v[0] }])]);
 }

@@ -1,13 +1,11 @@
 //! The deflection depends on the order of the loads: play operators between torque and turn.
 
-use std::rc::Rc;
-
 use robstiff::Effect;
 use robstiff_robots::Place as Part;
 
 use super::{Form, Kind, Offers, Scene, Side};
-use crate::model::term::Law;
-use crate::model::{Parameter, Size, Term, Torques};
+use crate::model::law::play;
+use crate::model::{Parameter, Size, Term};
 
 /// The kind.
 pub static KIND: Kind = Kind {
@@ -50,24 +48,6 @@ fn offer(scene: &Scene<'_>, offers: &mut Offers) {
         let between = found.into_iter().map(|radius| Form { between: true, ..form(&[radius]) });
         offers.add(Part::Joint(joint), grid.chain(between).collect());
     }
-}
-
-/// The play operator of a radius (Nm). Each visit begins on an arm at rest.
-pub fn play(radius: f64) -> Law {
-    Rc::new(move |torques: &Torques<'_>| {
-        let visits = torques.visit.iter().max().map_or(0, |last| last + 1);
-        let mut states: Vec<Option<f64>> = vec![None; visits];
-        let after = |(row, &load): (usize, &f64)| {
-            let rest = torques.preload[row];
-            // Where it rests under the arm's own weight.
-            let settled = 0_f64.min(rest + radius).max(rest - radius);
-            let before = states[torques.visit[row]].unwrap_or(settled);
-            let state = before.min(rest + load + radius).max(rest + load - radius);
-            states[torques.visit[row]] = Some(state);
-            state - settled
-        };
-        torques.load.iter().enumerate().map(after).collect()
-    })
 }
 
 /// Operators without weight have no part.

@@ -49,7 +49,6 @@ use std::rc::Rc;
 use robstiff::Effect;
 use robstiff_robots::Place as Part;
 
-pub use hysteresis::play;
 pub use outliers::KIND as OUTLIERS;
 pub use scene::{Scene, Shapes, What};
 

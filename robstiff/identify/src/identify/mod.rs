@@ -2,7 +2,7 @@
 //! their uncertainty.
 //!
 //! The way of the data: `samples` brings rows to the base frame and turns
-//! parameters into columns, with what `encoders` read, `covariance` asks the readings how noisy they are
+//! parameters into columns, with what encoders read, `covariance` asks the readings how noisy they are
 //! and `whitening` accounts for it, `problem` holds the regression in blocks of poses, `normal`
 //! solves it, `prepare` finds what the data can see (`not_shown` why nothing), and `displacement` or
 //! `clamped` puts the result together. Absolute `positions` have a regression of
@@ -13,25 +13,20 @@ pub(crate) mod clamped;
 pub(crate) mod column;
 pub(crate) mod covariance;
 pub(crate) mod displacement;
-pub(crate) mod encoders;
 #[cfg(test)]
 mod held_tests;
-pub(crate) mod holdout;
 pub(crate) mod misread;
 pub(crate) mod noise;
 pub(crate) mod normal;
 mod not_shown;
 pub(crate) mod one_by_one;
 pub(crate) mod positions;
-pub(crate) mod predict;
-pub(crate) mod prediction;
 pub(crate) mod prepare;
 pub(crate) mod problem;
 pub(crate) mod readable;
 pub(crate) mod samples;
 pub(crate) mod scale;
 pub(crate) mod second_order;
-pub(crate) mod setup;
 #[cfg(test)]
 mod tests;
 #[cfg(test)]
@@ -49,13 +44,12 @@ use std::vec::Vec;
 use nalgebra::DMatrix;
 use robstiff_robots::Description;
 
+pub(crate) use crate::campaign::holdout;
 pub use baseline::Visibility;
 pub use clamped::without_laws;
 pub use covariance::{Basis, Covariance};
 pub use misread::{Misread, misread};
 pub use positions::Prepared as PreparedPositions;
-pub use predict::predict;
-pub use prediction::{PredictedRow, Prediction};
 pub use prepare::noise_not_used;
 pub use scale::{ALL_JOINTS, off_by_one_factor};
 
@@ -256,10 +250,10 @@ pub fn identify(campaign: &Campaign) -> Result<Identification, Error> {
 }
 
 /// Refuses displacements along one direction.
-pub(crate) fn whole(campaign: &Campaign) -> Result<(), Error> {
+fn whole(campaign: &Campaign) -> Result<(), Error> {
     match &campaign.data {
         Data::Displacement(data) if !data.is_whole() => Err(Error::OtherCampaign(
-            "displacements along one direction only: `trace` takes them, this needs dx, dy and dz".to_string(),
+            "displacements along one direction only: `trace` takes them, `identify` needs dx, dy and dz".to_string(),
         )),
         _ => Ok(()),
     }

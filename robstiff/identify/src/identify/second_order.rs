@@ -12,8 +12,8 @@ use nalgebra::{DVector, Vector3, Vector6};
 use robstiff_robots::Description;
 
 use super::baseline::declared;
-use super::samples::{Sample, Samples, stack};
-use robstiff::elements::{Part, Rest, at_rest, displacement_at};
+use super::samples::Samples;
+use crate::observe::equilibrium::Beyond;
 
 /// A second order that is a larger share than this of the linear displacements is of numbers
 /// in another unit: no arm that machines comes to a tenth of it.
@@ -29,38 +29,27 @@ pub const TOO_LARGE: f64 = 2.0;
 /// or m/N). Zero where it is [too much](MOST) in half of the rows, and in rows where it is
 /// beyond all numbers.
 pub fn beyond_linear(samples: &Samples, compliance: &[f64]) -> DVector<f64> {
-    let beyond: Vec<Beyond> = samples.rows.iter().map(|row| of_row(row, compliance)).collect();
-    let is_known = 2 * beyond.iter().filter(|of| of.share <= MOST).count() > beyond.len();
-    let of = |at: usize| Some(&beyond[at]).filter(|of| is_known && of.share.is_finite());
+    // By its share of the linear displacement, both in m: with rotations, in rad, it would be another
+    // one in other units.
+    let of_row = |row: usize| {
+        let beyond = samples.beyond_linear(row, compliance);
+        let length = beyond.moved.fixed_rows::<3>(0).norm();
+        (if length == 0.0 { 0.0 } else { length / linear(samples, row, compliance).norm() }, beyond)
+    };
+    let beyond: Vec<(f64, Beyond)> = (0..samples.rows.len()).map(of_row).collect();
+    let is_known = 2 * beyond.iter().filter(|(share, _)| *share <= MOST).count() > beyond.len();
+    let of = |at: usize| Some(&beyond[at]).filter(|(share, _)| is_known && share.is_finite()).map(|(_, of)| of);
     samples.stacked_with(
         |at, _| of(at).map_or_else(Vector6::zeros, |of| of.moved),
         |at, k| of(at).map_or(0.0, |of| of.turns[samples.encoders[k] - 1]),
     )
 }
 
-/// The second order of a row.
-struct Beyond {
-    /// Of the marker (m) and its rotation (rad).
-    moved: Vector6<f64>,
-    /// Of each joint's turn (rad or m).
-    turns: Vec<f64>,
-    /// Its share of the linear displacement of the marker, both in m: with rotations, in rad,
-    /// it would be another one in other units.
-    share: f64,
-}
-
-fn of_row(row: &Sample, compliance: &[f64]) -> Beyond {
-    let joints: Vec<Part> = row.twists.iter().enumerate().map(|(joint, twist)| Part::Joint(joint, *twist)).collect();
-    let turned = |torques: &[f64]| torques.iter().zip(compliance).map(|(torque, h)| torque * h).collect();
-    let Rest { motion, turns, .. } = at_rest(&joints, |_| row.wrench, turned);
-    let first: Vec<f64> = row.twists.iter().zip(compliance).map(|(twist, h)| h * twist.dot(&row.wrench)).collect();
-    let linear: Vector6<f64> = row.twists.iter().zip(&first).map(|(twist, turn)| twist * *turn).sum();
-    let [shift, turn]: [Vector3<f64>; 2] = [0, 3].map(|from| linear.fixed_rows::<3>(from).into_owned());
-    let linear = stack(&(shift + turn.cross(&row.marker)), &turn);
-    let moved = displacement_at(&motion, &row.marker) - linear;
-    let length = |of: &Vector6<f64>| of.fixed_rows::<3>(0).norm();
-    let share = if length(&moved) == 0.0 { 0.0 } else { length(&moved) / length(&linear) };
-    Beyond { moved, turns: turns.iter().zip(first).map(|(turn, first)| turn - first).collect(), share }
+/// The linear displacement of the marker by joints of such compliances (m).
+fn linear(samples: &Samples, row: usize, compliance: &[f64]) -> Vector3<f64> {
+    let (twists, sample) = (samples.twists(row), &samples.rows[row]);
+    let twist: Vector6<f64> = twists.iter().zip(compliance).map(|(s, h)| s * (h * s.dot(&sample.wrench))).sum();
+    sample.read(&twist).fixed_rows::<3>(0).into_owned()
 }
 
 /// The samples with the second order, and what declared laws of joints do, fitted or not,
@@ -83,14 +72,12 @@ pub fn straightened(samples: &Samples, description: &Description, of_pose: impl 
 /// How many times as large displacements are as joints of such compliances make them: the
 /// median of the rows, which an outlying one does not move; 0 where they go the other way.
 fn size(samples: &Samples, compliance: &[f64], of_pose: impl Fn(usize) -> bool) -> f64 {
-    let of_row = |row: &Sample| {
-        let linear: Vector6<f64> = row.twists.iter().zip(compliance).map(|(s, h)| s * (h * s.dot(&row.wrench))).sum();
-        let turn: Vector3<f64> = linear.fixed_rows::<3>(3).into_owned();
-        let moved = linear.fixed_rows::<3>(0) + turn.cross(&row.marker);
+    let of_row = |row: usize| {
+        let moved = linear(samples, row, compliance);
         let length = moved.norm();
-        (length > 0.0).then(|| row.displacement.dot(&(moved / length)) / length)
+        (length > 0.0).then(|| samples.rows[row].displacement.dot(&(moved / length)) / length)
     };
-    let rows = samples.rows.iter().filter(|row| of_pose(row.pose));
+    let rows = (0..samples.rows.len()).filter(|&row| of_pose(samples.rows[row].pose));
     let mut sizes: Vec<f64> = rows.filter_map(of_row).collect();
     let middle = sizes.len() / 2;
     if sizes.is_empty() { 1.0 } else { sizes.select_nth_unstable_by(middle, f64::total_cmp).1.max(0.0) }

@@ -8,13 +8,11 @@ use std::vec::Vec;
 
 use robstiff_robots::{Description, catalogue};
 
-use super::column::Column;
 use super::{Error, Estimate, Identification, Visibility, identify, off_by_one_factor};
 use crate::campaign::made::{Plan, campaign};
 use crate::campaign::{Campaign, Data, Noise, Observation};
 use crate::simulate::{Scenario, simulate};
 use robstiff::Effect;
-use robstiff::elements::Spring;
 
 /// What a robot of the catalogue with a tool gives whose middle is next to the last axis, which
 /// forces on it hardly turn.
@@ -90,7 +88,7 @@ fn with_wrong_force(plan: &Plan, row: usize, wrong: impl Fn(&mut Observation)) -
 /// are free in is the response to it.
 #[test]
 fn a_row_with_a_wrong_force_is_left_out() {
-    let tilted = vec![(Column::Spring(Spring::Transverse(3)), 1e-7)];
+    let tilted = vec![Effect::TransverseCompliance { joint: 3, value: 1e-7 }];
     let plans = [
         Plan::new(1),
         Plan { hidden: tilted, ..Plan::new(2) },

@@ -158,24 +158,23 @@ impl Arm {
         self.rows.len()
     }
 
-    /// Where it stands at joint coordinates (rad or m), if joints turn aside as well, each by a
-    /// rotation vector in its own frame (rad); none do where `aside` is empty.
+    /// Where it stands at joint coordinates (rad or m), if joints stand aside as well, each by a
+    /// rotation vector in its own frame (rad), of a joint that slides with a shift (m) in place of the
+    /// turn about z; none do where `aside` is empty.
     pub fn stand(&self, q: &[f64], aside: &[Vector3<f64>]) -> Stand {
         let mut frame = self.base;
         let count = self.rows.len();
         let (mut joints, mut links) = (Vec::with_capacity(count), Vec::with_capacity(count));
         let mut screws = Vec::with_capacity(count);
         for (i, Row { kind, numbers: [theta, d, a, alpha, beta] }) in self.rows.iter().enumerate() {
-            let (angle, offset) = match kind {
-                JointKind::Revolute => (theta + q[i], *d),
-                JointKind::Prismatic => (*theta, d + q[i]),
+            let by = aside.get(i).copied().unwrap_or_default();
+            let (angle, offset, by) = match kind {
+                JointKind::Revolute => (theta + q[i], *d, by),
+                JointKind::Prismatic => (*theta, d + q[i] + by.z, Vector3::new(by.x, by.y, 0.0)),
             };
             let turns = |frame: &Frame, axis| Screw { axis: frame.axis(axis), through: frame.at, slides: false };
             let slides = |frame: &Frame, axis| Screw { axis: frame.axis(axis), through: frame.at, slides: true };
-            let joint = |frame: &Frame| match aside.get(i) {
-                Some(aside) if *aside != Vector3::zeros() => frame.turned(&turn_by(aside)),
-                _ => *frame,
-            };
+            let joint = |frame: &Frame| if by == Vector3::zeros() { *frame } else { frame.turned(&turn_by(&by)) };
             let motion = |frame: &Frame| frame.turned(&about(2, angle)).moved(&Vector3::new(0.0, 0.0, offset));
             let along = |frame: &Frame| frame.moved(&Vector3::new(*a, 0.0, 0.0));
             let bend = |frame: &Frame| {

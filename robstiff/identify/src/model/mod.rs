@@ -5,9 +5,13 @@
 //! - [`spring`]: what yields in proportion to the load;
 //! - [`rig`]: where loads act and what is read, in which frame;
 //! - [`weight`]: what the arm weighs on itself;
-//! - [`term`]: what one number does to the world, and what it is likely to be.
+//! - [`law`]: what yields otherwise;
+//! - [`term`]: what one number does to the world, and what it is likely to be;
+//! - [`described`]: what a description declares, in such numbers.
 
 pub mod arm;
+pub mod described;
+pub mod law;
 pub mod rig;
 pub mod spring;
 pub mod term;

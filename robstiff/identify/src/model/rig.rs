@@ -118,6 +118,14 @@ impl Rig {
         }
     }
 
+    /// The converse of [`as_filed`](Self::as_filed).
+    pub fn in_base(&self, filed: &Vector3<f64>, declared: &Frame) -> Vector3<f64> {
+        match self.measured_frame {
+            campaign::Frame::Base => *filed,
+            campaign::Frame::Tool => declared.turn * filed,
+        }
+    }
+
     /// A point of the base frame in the frame of what reads absolute positions (m).
     pub fn position(&self, point: &Vector3<f64>) -> Vector3<f64> {
         let [turn, shift] = &self.stand_off;

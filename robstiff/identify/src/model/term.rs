@@ -79,9 +79,9 @@ pub enum Term {
     /// Every joint yields to its torque by a law, with one number for all.
     Laws(LawOfEach),
     /// A joint (from 1) stands aside of its coordinate without any load, by a turn about an axis of
-    /// its own frame (rad).
+    /// its own frame (rad); along z by a shift (m) where it slides.
     Aside(usize, usize, OfRow),
-    /// Every joint stands aside so about its own axis, by a number of each row and joint (from 1).
+    /// Every joint stands aside so along its own coordinate, by a number of each row and joint (from 1).
     Asides(OfJoint),
     /// It is a number of the table: of a joint (from 1), and which ([`THETA`](super::arm::THETA) and so
     /// on).

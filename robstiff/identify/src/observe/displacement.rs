@@ -1,14 +1,17 @@
 //! Displacements under measured loads: loaded minus unloaded.
 
-use nalgebra::{DMatrix, DVector, Rotation3, Vector3, Vector6};
+use nalgebra::{DMatrix, DVector, Vector3, Vector6};
 use robstiff::JointKind;
+use robstiff_robots::Description;
 
 use super::elastic::{Loaded, Sequence, Yielding, asides, gains, stacked, sum, yielding};
+use super::encoders::Encoders;
+use super::equilibrium::{beyond_linear, own_springs};
 use super::{Observation, Readings, changed, step_of};
 use crate::campaign::{Displacements, Observation as Row};
 use crate::model::arm::Frame;
 use crate::model::weight::Weight;
-use crate::model::{Arm, At, Parameter, Rig, Spring, Stand, Term, World};
+use crate::model::{Arm, At, Parameter, Rig, Stand, Term, World};
 
 /// A campaign of displacements.
 pub struct Displacement<'c> {
@@ -77,7 +80,12 @@ pub(super) fn in_visit(visit: &[usize], times: &[Option<f64>]) -> Vec<f64> {
 
 impl<'c> Displacement<'c> {
     /// Of a campaign on the arm of a description.
-    pub fn new(robot: &robstiff_robots::Description, data: &'c Displacements) -> Self {
+    pub fn new(robot: &Description, data: &'c Displacements) -> Self {
+        Self::reading(robot, data, Encoders::of(data))
+    }
+
+    /// The same with other encoders than those that the rows have readings of.
+    pub fn reading(robot: &Description, data: &'c Displacements, encoders: Encoders) -> Self {
         let kinds: Vec<JointKind> = robot.joints.iter().map(|joint| joint.kind).collect();
         let arm = Arm::of(robot);
         let (mut stations, mut station): (Vec<&[f64]>, Vec<usize>) = (Vec::new(), Vec::new());
@@ -92,7 +100,7 @@ impl<'c> Displacement<'c> {
         }
         let declared: Vec<Stand> = stations.iter().map(|q| arm.stand(q, &[])).collect();
         let turns = data.rows.iter().all(|row| row.rotation.is_some()) && !data.rows.is_empty();
-        let (encoders, turned, given) = encoders(data);
+        let Encoders { joints: encoders, turned, given } = encoders;
         let directions: Vec<Vector3<f64>> = data.directions.iter().copied().map(Vector3::from).collect();
         let rig = Rig::declared((data.wrench_frame, data.wrench_at), (data.measured_frame, data.measured_at));
         let weight = Weight::of(robot);
@@ -192,6 +200,22 @@ impl<'c> Displacement<'c> {
         }
     }
 
+    /// What laws of joints need to know of all rows.
+    pub fn sequence(&self) -> &Sequence {
+        &self.sequence
+    }
+
+    /// The displacement that stacked readings have of a row, in the frame of the file (m); zero across what is read.
+    pub fn moved(&self, stacked: &DVector<f64>, row: usize) -> Vector3<f64> {
+        let read = stacked.rows(row * self.readings.width, self.directions.len());
+        self.directions.iter().zip(read.iter()).map(|(along, read)| along * *read).sum()
+    }
+
+    /// A vector as it is read at a row, in the base frame.
+    pub fn in_base(&self, row: usize, read: &Vector3<f64>) -> Vector3<f64> {
+        self.world.rig.in_base(read, &self.declared[self.station[row]].tcp)
+    }
+
     fn rows(&self) -> usize {
         self.data.rows.len()
     }
@@ -272,60 +296,24 @@ impl<'c> Displacement<'c> {
         read
     }
 
-    /// What large loads make of the arm's shape: it carries them on other levers once it has
-    /// yielded. The displacement of the joints' own springs in equilibrium, less that about the
-    /// unloaded arm; some 0.2 % of it under 800 N.
+    /// What large loads make of the arm's shape.
     fn second_order(&self, world: &World, parameters: &[Parameter], values: &[f64]) -> DVector<f64> {
         let world = changed(world, parameters, values);
-        let mut own = vec![0.0; self.kinds.len()];
-        for (parameter, &value) in parameters.iter().zip(values) {
-            if let Term::Spring(Spring::Joint(joint)) = parameter.term {
-                own[joint - 1] += value.max(0.0);
-            }
-        }
+        let own = own_springs(parameters, values, self.kinds.len());
         let loaded = self.loaded(&world, &[], &[]);
         stacked(self.rows(), self.readings.width, |row, numbers| {
-            let (rest, q) = (&loaded.stands[loaded.station[row]], &self.data.rows[row].q);
-            let wrench = &loaded.wrenches[row];
-            let (force, moment) = (wrench.fixed_rows::<3>(0).into_owned(), wrench.fixed_rows::<3>(3).into_owned());
-            let lever = rest.tcp.turn.transpose() * (rest.tcp.turn * (world.rig.wrench_at + world.rig.lever));
-            let alone: Vector3<f64> = moment - (rest.tcp.turn * lever).cross(&force);
-            let turns = |stand: &Stand| -> Vec<f64> {
-                let moment = alone + (stand.tcp.turn * lever).cross(&force);
-                let wrench = Vector6::new(force.x, force.y, force.z, moment.x, moment.y, moment.z);
-                let turn = |joint: usize| {
-                    own[joint] * stand.joint_screw(joint, self.kinds[joint]).twist_at(&stand.tcp.at).dot(&wrench)
-                };
-                (0..own.len()).map(turn).collect()
-            };
-            let linear = turns(rest);
-            let twist: Vector6<f64> =
-                linear.iter().enumerate().map(|(joint, turn)| loaded.twist(row, joint) * *turn).sum();
-            let mut turned = linear.clone();
-            let mut stand = rest.clone();
-            for _ in 0..PASSES {
-                let moved: Vec<f64> = q.iter().zip(&turned).map(|(q, turn)| q + turn).collect();
-                stand = world.arm.stand(&moved, &[]);
-                turned = turns(&stand);
-            }
-            let (before, after) =
-                (rest.tcp.at + world.rig.marker(&rest.tcp), stand.tcp.at + world.rig.marker(&stand.tcp));
-            let rotation = Rotation3::from_matrix_unchecked(stand.tcp.turn * rest.tcp.turn.transpose()).scaled_axis();
-            let d = after - before;
-            let at_marker = Vector6::new(d.x, d.y, d.z, rotation.x, rotation.y, rotation.z);
+            let at = loaded.station[row];
+            let rest = (&loaded.stands[at], self.data.rows[row].q.as_slice(), [].as_slice());
+            let beyond = beyond_linear(&world, (&self.kinds, &own), rest, &loaded.wrenches[row], &loaded.twists[at]);
             let declared = &self.declared[self.station[row]].tcp;
-            let whole = world.rig.seen(&at_marker, &rest.tcp, declared);
-            self.put(&(whole - self.seen(&world, &twist, &rest.tcp, row)), numbers);
+            self.put(&world.rig.seen(&beyond.moved, &loaded.stands[at].tcp, declared), numbers);
             let first = numbers.len() - self.encoders.len();
             for (number, &joint) in numbers[first..].iter_mut().zip(&self.encoders) {
-                *number = turned[joint - 1] - linear[joint - 1];
+                *number = beyond.turns[joint - 1];
             }
         })
     }
 }
-
-/// An arm is closer to its equilibrium by a factor of some thousand with each pass.
-const PASSES: usize = 3;
 
 impl Observation for Displacement<'_> {
     fn readings(&self) -> &Readings {
@@ -383,54 +371,4 @@ impl Observation for Displacement<'_> {
     fn each(&self, of: &mut dyn FnMut(&At<'_>)) {
         (0..self.rows()).for_each(|row| of(&self.at(row)));
     }
-}
-
-/// A row whose wrench is below this share of the largest of its visit carries no load.
-const UNLOADED: f64 = 0.01;
-
-/// An encoder that differs from the motor by less than this at every row copies it (rad or m).
-const COPIED: f64 = 1e-12;
-
-/// The joints (from 1) whose angle is read behind the gear; by row and one of these, by how much it
-/// has turned beyond its motor; and by row and joint, by how much the motor has turned, where that is
-/// read (rad or m).
-fn encoders(data: &Displacements) -> (Vec<usize>, Vec<Vec<f64>>, Vec<Vec<f64>>) {
-    let given = given(data).unwrap_or_default();
-    let output: Option<Vec<&[f64]>> = data.rows.iter().map(|row| row.encoders.as_deref()).collect();
-    let Some(output) = output.filter(|output| !output.is_empty()) else {
-        return (Vec::new(), Vec::new(), given);
-    };
-    let beyond = |row: usize, joint: usize| {
-        let motor = given.get(row).map_or(0.0, |given: &Vec<f64>| given[joint]);
-        output[row][joint] - data.rows[row].q[joint] - motor
-    };
-    let reads = |joint: &usize| (0..output.len()).any(|row| beyond(row, *joint).abs() > COPIED);
-    let joints: Vec<usize> = (0..data.rows[0].q.len()).filter(reads).collect();
-    let turned = (0..output.len()).map(|row| joints.iter().map(|&joint| beyond(row, joint)).collect()).collect();
-    (joints.into_iter().map(|joint| joint + 1).collect(), turned, given)
-}
-
-/// By how much each motor has turned, where that is read. Where a visit has rows without a load, the
-/// motors' angles there are where the controller holds them, not `q`.
-fn given(data: &Displacements) -> Option<Vec<Vec<f64>>> {
-    let motors: Vec<&[f64]> = data.rows.iter().map(|row| row.motors.as_deref()).collect::<Option<_>>()?;
-    let size = |row: &Row| row.wrench.iter().map(|w| w * w).sum::<f64>().sqrt();
-    let mut largest = vec![0.0_f64; data.visits.len()];
-    data.rows.iter().for_each(|row| largest[row.visit] = largest[row.visit].max(size(row)));
-    // By visit, the sums over rows without a load and their number.
-    let mut still = vec![(Vec::new(), 0.0); data.visits.len()];
-    for (row, motors) in data.rows.iter().zip(&motors) {
-        if size(row) <= UNLOADED * largest[row.visit] {
-            let (sums, count): &mut (Vec<f64>, f64) = &mut still[row.visit];
-            sums.resize(motors.len(), 0.0);
-            sums.iter_mut().zip(*motors).zip(&row.q).for_each(|((sum, m), q)| *sum += m - q);
-            *count += 1.0;
-        }
-    }
-    let of_row = |(row, motors): (&Row, &&[f64])| -> Vec<f64> {
-        let (sums, count) = &still[row.visit];
-        let held = |joint: usize| sums.get(joint).map_or(0.0, |sum| sum / count);
-        motors.iter().zip(&row.q).enumerate().map(|(joint, (m, q))| m - q - held(joint)).collect()
-    };
-    Some(data.rows.iter().zip(&motors).map(of_row).collect())
 }

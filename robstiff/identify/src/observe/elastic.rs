@@ -8,6 +8,7 @@ use robstiff::JointKind;
 use crate::model::{EachRow, Parameter, Stand, Term, Torques};
 
 /// An arm that stands somewhere at each row, under a load.
+#[derive(Clone, Debug)]
 pub struct Loaded {
     /// Turning or sliding, a joint each.
     pub kinds: Vec<JointKind>,

@@ -8,11 +8,15 @@
 pub mod clamped;
 pub mod displacement;
 pub mod elastic;
+pub mod encoders;
+pub mod equilibrium;
 pub mod position;
+pub mod registration;
 
 use nalgebra::{DMatrix, DVector, Vector3};
+use robstiff_robots::Description;
 
-use crate::model::{At, Parameter, Term, World};
+use crate::model::{At, Parameter, Term, World, described};
 
 /// What was read, stacked row by row.
 #[derive(Clone, Debug)]
@@ -82,6 +86,13 @@ pub trait Observation {
 
     /// Hands over where and when each row was read.
     fn each(&self, of: &mut dyn FnMut(&At<'_>));
+}
+
+/// What is read in a world on the arm of a description, as it is declared: the same that the observation
+/// was made of.
+pub fn as_declared(observation: &dyn Observation, world: &World, robot: &Description) -> DVector<f64> {
+    let (parameters, values) = described::as_declared(robot);
+    observation.predict(world, &parameters, &values)
 }
 
 /// The world with what its parameters change in it.

@@ -1,13 +1,17 @@
 //! Absolute positions of a point of the tool, read by something that stands anywhere.
 
-use nalgebra::{DMatrix, DVector, Isometry3, Matrix3, Rotation3, Translation3, UnitQuaternion, Vector3, Vector6};
+use nalgebra::{DMatrix, DVector, Isometry3, Vector3, Vector6};
 use robstiff::JointKind;
+use robstiff_robots::Description;
 use robstiff_robots::effect::gravity_sag::GRAVITY;
 
 use super::displacement::{Clock, in_visit};
 use super::elastic::{Loaded, Sequence, asides, stacked, sum, yielding};
-use super::{Observation, Readings, changed, step_of};
+use super::equilibrium::{beyond_linear, own_springs};
+use super::registration::registration;
+use super::{Observation, Readings, as_declared, changed, step_of};
 use crate::campaign::{Frame, PositionRow, Positions};
+use crate::model::arm::Screw;
 use crate::model::{Arm, At, Parameter, Rig, Stand, Term, Weight, World};
 
 /// A campaign of absolute positions.
@@ -27,7 +31,7 @@ pub struct Position<'c> {
 impl<'c> Position<'c> {
     /// Of a campaign on the arm of a description. Where the robot stands begins where the declared
     /// arm fits best.
-    pub fn new(robot: &robstiff_robots::Description, data: &'c Positions) -> Self {
+    pub fn new(robot: &Description, data: &'c Positions) -> Self {
         let kinds: Vec<JointKind> = robot.joints.iter().map(|joint| joint.kind).collect();
         let arm = Arm::of(robot);
         let declared: Vec<Stand> = data.rows.iter().map(|row| arm.stand(&row.q, &[])).collect();
@@ -117,7 +121,39 @@ impl<'c> Position<'c> {
         Loaded::new(&self.kinds, stands, (0..self.rows()).collect(), wrenches)
     }
 
-    /// What is read with the joints aside by so much.
+    /// The point that is read at each row of the arm of a description, as it is declared, in the base
+    /// frame (m).
+    pub fn points(&self, robot: &Description) -> Vec<Vector3<f64>> {
+        let mut world = self.world.clone();
+        (world.rig.stand, world.rig.middle) = (Isometry3::identity(), Vector3::zeros());
+        let read = as_declared(self, &world, robot);
+        (0..self.rows()).map(|row| read.fixed_rows::<3>(3 * row).into_owned()).collect()
+    }
+
+    /// What large loads make of the arm's shape at the point that is read; nothing where no row has one.
+    fn second_order(
+        &self,
+        asides: &[Vec<Vector3<f64>>],
+        world: &World,
+        parameters: &[Parameter],
+        values: &[f64],
+    ) -> DVector<f64> {
+        if !self.payloads {
+            return DVector::zeros(3 * self.rows());
+        }
+        let world = changed(world, parameters, values);
+        let own = own_springs(parameters, values, self.kinds.len());
+        let loaded = self.loaded(&world, asides);
+        stacked(self.rows(), 3, |row, numbers| {
+            let aside = asides.get(row).map_or([].as_slice(), Vec::as_slice);
+            let rest = (&loaded.stands[row], self.data.rows[row].q.as_slice(), aside);
+            let beyond = beyond_linear(&world, (&self.kinds, &own), rest, &loaded.wrenches[row], &loaded.twists[row]);
+            let moved: Vector3<f64> = beyond.moved.fixed_rows::<3>(0).into_owned();
+            numbers.copy_from_slice(world.rig.direction(&moved).as_slice());
+        })
+    }
+
+    /// What is read with the joints aside by so much, but for what large loads make of the arm's shape.
     fn predict_with(
         &self,
         asides: &[Vec<Vector3<f64>>],
@@ -165,7 +201,7 @@ impl Observation for Position<'_> {
 
     fn predict(&self, world: &World, parameters: &[Parameter], values: &[f64]) -> DVector<f64> {
         let asides = self.asides(parameters, values);
-        self.predict_with(&asides, world, parameters, values)
+        self.predict_with(&asides, world, parameters, values) + self.second_order(&asides, world, parameters, values)
     }
 
     fn columns(&self, world: &World, parameters: &[Parameter], values: &[f64], of: &[usize]) -> DMatrix<f64> {
@@ -174,6 +210,12 @@ impl Observation for Position<'_> {
         let loaded = self.loaded(&here, &asides);
         let levers: Vec<Vector3<f64>> =
             loaded.stands.iter().map(|stand| self.point(&here, stand, &Vector6::zeros())).collect();
+        // How the point moves for a unit by which a joint stands aside.
+        let aside = |joint: usize, axis: usize, row: usize| {
+            let frame = &loaded.stands[row].joints[joint - 1];
+            let slides = axis == 2 && self.kinds[joint - 1] == JointKind::Prismatic;
+            Screw { axis: frame.axis(axis), through: frame.at, slides }.at(&levers[row])
+        };
         let mut columns = DMatrix::zeros(3 * self.rows(), of.len());
         for (k, &which) in of.iter().enumerate() {
             let parameter = &parameters[which];
@@ -189,15 +231,12 @@ impl Observation for Position<'_> {
                     })
                 }
                 Term::Aside(joint, axis, of) => Some(stacked(self.rows(), 3, |row, numbers| {
-                    let frame = &loaded.stands[row].joints[joint - 1];
-                    let moved = frame.axis(*axis).cross(&(levers[row] - frame.at)) * of(&self.at(row));
+                    let moved = aside(*joint, *axis, row) * of(&self.at(row));
                     numbers.copy_from_slice(here.rig.direction(&moved).as_slice());
                 })),
                 Term::Asides(of) => Some(stacked(self.rows(), 3, |row, numbers| {
-                    let of_joint = |(joint, frame): (usize, &crate::model::arm::Frame)| {
-                        frame.axis(2).cross(&(levers[row] - frame.at)) * of(&self.at(row), joint)
-                    };
-                    let moved: Vector3<f64> = (1..).zip(&loaded.stands[row].joints).map(of_joint).sum();
+                    let of_joint = |joint| aside(joint, 2, row) * of(&self.at(row), joint);
+                    let moved: Vector3<f64> = (1..=self.kinds.len()).map(of_joint).sum();
                     numbers.copy_from_slice(here.rig.direction(&moved).as_slice());
                 })),
                 Term::Reading(of) => Some(stacked(self.rows(), 3, |row, numbers| {
@@ -236,18 +275,4 @@ fn middle_of(points: &[Vector3<f64>]) -> Vector3<f64> {
         along.sort_by(f64::total_cmp);
         along.get(along.len() / 2).copied().unwrap_or(0.0)
     })
-}
-
-/// The motion that takes points nearest to others by least squares (Arun, Huang and Blostein, IEEE
-/// Trans. PAMI 9, 1987; Umeyama 1991 for the reflection).
-fn registration(points: &[Vector3<f64>], read: &[Vector3<f64>]) -> Isometry3<f64> {
-    let mean = |of: &[Vector3<f64>]| of.iter().sum::<Vector3<f64>>() / of.len().max(1) as f64;
-    let (from, to) = (mean(points), mean(read));
-    let spread: Matrix3<f64> = points.iter().zip(read).map(|(p, r)| (p - from) * (r - to).transpose()).sum();
-    let parts = spread.svd(true, true);
-    let (Some(u), Some(v)) = (parts.u, parts.v_t.map(|v| v.transpose())) else { return Isometry3::identity() };
-    let sign = (v * u.transpose()).determinant().signum();
-    let turn = v * Matrix3::from_diagonal(&Vector3::new(1.0, 1.0, sign)) * u.transpose();
-    let turn = UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(turn));
-    Isometry3::from_parts(Translation3::from(to - turn * from), turn)
 }

@@ -2,13 +2,12 @@
 
 use std::vec::Vec;
 
-use nalgebra::{DMatrix, Matrix3, SVector, Vector3};
+use nalgebra::{DMatrix, Vector3};
 use robstiff_robots::Description;
 use robstiff_robots::effect::gravity_sag::GRAVITY;
 
 use crate::campaign::Frame;
-use crate::identify::samples::turn_of;
-use robstiff::Robot;
+use crate::model::Arm;
 
 /// A load sequence at one pose, of displacements with one unloaded reading.
 #[derive(Clone, Debug, PartialEq)]
@@ -41,7 +40,7 @@ impl Visit {
         if frame == Frame::Base {
             return self.loads.clone();
         }
-        let turn = tool_turn(robot, &self.q).transpose();
+        let turn = Arm::of(robot).stand(&self.q, &[]).tcp.turn.transpose();
         let turned = |load: &[f64; 6]| {
             let force = turn * Vector3::from_column_slice(&load[..3]);
             let moment = turn * Vector3::from_column_slice(&load[3..]);
@@ -49,15 +48,6 @@ impl Visit {
         };
         self.loads.iter().map(turned).collect()
     }
-}
-
-/// How the tool is turned in the base frame.
-pub(super) fn tool_turn(robot: &Description, q: &[f64]) -> Matrix3<f64> {
-    robstiff::with_robot!(robot, |robot| turn(&robot, q))
-}
-
-fn turn<const N: usize>(robot: &impl Robot<N>, q: &[f64]) -> Matrix3<f64> {
-    turn_of(&robot.transform(&SVector::<f64, N>::from_column_slice(q)))
 }
 
 /// One sigma of a rotation reading where the campaign states none (rad): that

@@ -5,12 +5,13 @@ use std::collections::BTreeMap;
 use nalgebra::DMatrix;
 use robstiff_robots::Description;
 
-use super::always::{BLOCK, Declared, LIKELY_SCALES, REFLECTOR, always, fixed};
+use super::always::{BLOCK, Declared, LIKELY_SCALES, REFLECTOR, always};
 use super::layout::Layout;
 use super::problem::{Problem, moves};
 use super::search::Width;
 use crate::effects::{Offers, Scene, Shapes, What};
 use crate::model::arm::BETA;
+use crate::model::described::fixed;
 use crate::model::{Size, Term, World};
 use crate::observe::Observation;
 use crate::regression::gram::with_target;
@@ -151,7 +152,7 @@ impl<'c> Engine<'c> {
     /// All parameters and the forms of all candidates.
     pub fn layout(&self) -> Layout {
         let (_, own) = always(self.robot, &self.scene, self.blocks());
-        Layout::new(fixed(self.robot, &self.scene), own, Offers::of(&self.scene))
+        Layout::new(fixed(self.robot), own, Offers::of(&self.scene))
     }
 
     /// The widths of searches: the last, those before, and those of folds.

@@ -2,7 +2,7 @@
 
 use std::vec::Vec;
 
-use nalgebra::{Matrix3, SVector, Vector3};
+use nalgebra::Vector3;
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 use robstiff_robots::Description;
@@ -10,23 +10,23 @@ use robstiff_robots::quantity::finite;
 
 use super::draw::{PACE, Stream, names, stream};
 use super::{Pull, Scenario, UnderForces};
-use crate::campaign::{AXES, Displacements, Frame, Observation};
-use crate::identify::samples::{Samples, turn_of};
+use crate::campaign::{AXES, Displacements, Observation as Row};
+use crate::observe::displacement::Displacement;
+use crate::observe::encoders::Encoders;
+use crate::observe::{Observation, as_declared};
 use crate::probability::normal;
-use robstiff::elements::deformed;
-use robstiff::{Robot, State};
 
 /// The displacements of a scenario at some poses, with noise.
 pub fn measured(truth: &Description, scenario: &Scenario, under: &UnderForces, poses: &[Vec<f64>]) -> Displacements {
     let mut data = loads(scenario, under, poses);
-    robstiff::with_robot!(truth, |robot| deflect(&robot, under, &mut data));
+    deflect(truth, under, &mut data);
     add_noise(scenario, under, &mut data);
     add_encoder_noise(scenario, under, &mut data);
     data
 }
 
 /// Whether a campaign may have all numbers of a row.
-pub fn is_readable(row: &Observation) -> bool {
+pub fn is_readable(row: &Row) -> bool {
     let read = row.displacement.iter().chain(row.rotation.iter().flatten()).chain(row.encoders.iter().flatten());
     row.wrench.iter().chain(&row.q).chain(read).all(|value| finite(*value).is_ok())
 }
@@ -44,7 +44,7 @@ fn loads(scenario: &Scenario, under: &UnderForces, poses: &[Vec<f64>]) -> Displa
                 let (force, moment) = (force * *share, moment * *share);
                 // What is read unloaded before every load is loaded anew with each.
                 let visit = if under.shares_unloaded { visit } else { rows.len() };
-                rows.push(Observation {
+                rows.push(Row {
                     line: rows.len() + 2,
                     pose,
                     visit,
@@ -91,25 +91,24 @@ fn unit(vector: Vector3<f64>) -> Vector3<f64> {
     if (1e-100..1e100).contains(&size) { vector.normalize() } else { (vector / size).normalize() }
 }
 
-/// Sets what an exact instrument reads in every row.
-fn deflect<const N: usize>(robot: &impl Robot<N>, under: &UnderForces, data: &mut Displacements) {
-    let samples = Samples::new(robot, data);
-    // The rows of a visit are one load sequence, on a robot that was never loaded.
-    let (mut state, mut visit) = (State::new(), None);
-    for (row, sample) in data.rows.iter_mut().zip(&samples.rows) {
-        if visit != Some(row.visit) {
-            (state, visit) = (State::new(), Some(row.visit));
-        }
-        let q = SVector::<f64, N>::from_column_slice(&sample.q);
-        let under_load = deformed(robot, &q, |_| sample.wrench, &mut state);
-        row.encoders = under.encoder_noise.is_some().then(|| (q + under_load.turns).as_slice().to_vec());
-        let six = under_load.displacement_at(&sample.marker);
-        let frame: Matrix3<f64> = match data.measured_frame {
-            Frame::Base => Matrix3::identity(),
-            Frame::Tool => turn_of(&sample.tcp).transpose(),
-        };
-        row.displacement = (frame * six.fixed_rows::<3>(0)).into();
-        row.rotation = under.rotation_noise.is_some().then(|| (frame * six.fixed_rows::<3>(3)).into());
+/// Sets what an exact instrument reads in every row. The rows of a visit are one load sequence, on a robot
+/// that was never loaded.
+fn deflect(truth: &Description, under: &UnderForces, data: &mut Displacements) {
+    let encoders = match under.encoder_noise {
+        Some(_) => Encoders::of_all(truth.joints.len(), data.rows.len()),
+        None => Encoders::default(),
+    };
+    let (read, width) = {
+        let observation = Displacement::reading(truth, data, encoders);
+        (as_declared(&observation, observation.world(), truth), observation.readings().width)
+    };
+    for (row, read) in data.rows.iter_mut().zip(read.as_slice().chunks(width)) {
+        row.displacement = core::array::from_fn(|k| read[k]);
+        row.rotation = row.rotation.map(|_| core::array::from_fn(|k| read[3 + k]));
+        row.encoders = under.encoder_noise.is_some().then(|| {
+            let turns = &read[width - row.q.len()..];
+            row.q.iter().zip(turns).map(|(q, turn)| q + turn).collect()
+        });
     }
 }
 

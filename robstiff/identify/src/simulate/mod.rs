@@ -6,14 +6,13 @@
 //! description lacks), draws poses and loads, and reads them with noise. The
 //! result is a campaign as files, for trying a plan before renting a tracker.
 //!
-//! Displacements and positions are those of the arm in its deformed shape
-//! ([`deformed`](robstiff::elements::deformed)), what hysteresis remembers beginning anew
-//! with each visit; payloads are not remembered. Encoders on the output side of the
-//! gears read by how much the joints turn, and nothing of bearings, links, the base and
-//! the tool. Neglected is gravity, which loaded and unloaded readings have in common to
-//! first order, but for what `gravity_sag` says. It shares its formulas with tracing, so
-//! it says what a plan of measurements can tell apart, and nothing on whether the
-//! formulas are right.
+//! Displacements and positions are those of the model that tracing fits: what joints yield in the
+//! arm's deformed shape, all else to first order, what hysteresis remembers beginning anew with each
+//! visit; payloads are not remembered. Encoders on the output side of the gears read by how much the
+//! joints turn, and nothing of bearings, links, the base and the tool. Neglected is gravity, which
+//! loaded and unloaded readings have in common to first order, but for what `gravity_sag` says. As it
+//! shares its formulas with tracing, it says what a plan of measurements can tell apart, and nothing
+//! on whether the formulas are right.
 
 mod displacements;
 mod draw;

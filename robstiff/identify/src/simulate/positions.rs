@@ -2,7 +2,7 @@
 
 use std::vec::Vec;
 
-use nalgebra::{Rotation3, Vector3};
+use nalgebra::{Isometry3, Vector3};
 use rand_chacha::ChaCha8Rng;
 use robstiff_robots::Description;
 use robstiff_robots::quantity::finite;
@@ -10,8 +10,7 @@ use robstiff_robots::quantity::finite;
 use super::draw::{PACE, Stream, names, stream};
 use super::{Scenario, UnderPayloads};
 use crate::campaign::{PositionRow, Positions};
-use crate::identify::positions::model::Model;
-use crate::identify::positions::registration::Registration;
+use crate::observe::position::Position;
 use crate::probability::normal;
 
 /// How far the tracker stands from the robot, along each axis, on average (m).
@@ -55,16 +54,17 @@ pub fn is_readable(row: &PositionRow) -> bool {
 /// Sets what the tracker reads in every row.
 fn read(truth: &Description, scenario: &Scenario, under: &UnderPayloads, data: &mut Positions) {
     let mut random = stream(scenario, Stream::Tracker);
-    let turn = Rotation3::new(vector(&mut random, [1.0; 3]));
-    let tracker = Registration { turn, at: vector(&mut random, [DISTANCE; 3]) };
-    let points = Model::new(truth, data).points(data);
+    let turn = vector(&mut random, [1.0; 3]);
+    let tracker = Isometry3::new(vector(&mut random, [DISTANCE; 3]), turn);
+    let points = Position::new(truth, data).points(truth);
     let mut random = stream(scenario, Stream::Noise);
     let (mut visit, mut comes_to) = (None, Vector3::zeros());
     for (row, point) in data.rows.iter_mut().zip(points) {
         if visit != Some(row.visit) {
             (visit, comes_to) = (Some(row.visit), vector(&mut random, [under.repeatability; 3]));
         }
-        row.position = (tracker.placed(&(point + comes_to)) + vector(&mut random, scenario.noise)).into();
+        let placed = tracker.transform_point(&(point + comes_to).into()).coords;
+        row.position = (placed + vector(&mut random, scenario.noise)).into();
     }
 }
 

@@ -5,9 +5,9 @@ use nalgebra::{SVector, Vector3, Vector6};
 use robstiff_robots::{Description, DhEntry, Effect, catalogue};
 
 use super::{Part, Scenario, Simulated, simulate};
+use crate::campaign::made::campaign;
 use crate::campaign::{Data, Displacements};
-use crate::identify::positions;
-use crate::identify::prediction::{PredictedRow, Prediction};
+use crate::predict::{PredictedRow, Prediction, predict};
 use robstiff::{Generic, Robot, State};
 
 const SCENARIO: &str = "\
@@ -310,7 +310,8 @@ fn positions_are_read_under_payloads() {
         assert_eq!(row.payload, [0.0, 120.0][i % 2]);
     }
     let left = |description: &Description| {
-        let Prediction { rows, rms, .. } = positions::predict(description, data).expect("positions");
+        let campaign = campaign(description.clone(), found.data.clone());
+        let Prediction { rows, rms, .. } = predict(description, &campaign).expect("positions");
         let off = |row: &PredictedRow| Vector3::from(row.measured) - Vector3::from(row.predicted);
         (rms, rows.iter().map(off).collect::<Vec<_>>())
     };

@@ -12,9 +12,9 @@ use nalgebra::Vector3;
 use robstiff_robots::Description;
 
 use super::{NamedEffect, RowResidual, Trace, Verdict};
-use crate::campaign::{Campaign, ClampedRow, Data, Displacements, Frame, Observation};
-use crate::identify::predict;
-use crate::identify::samples::Samples;
+use crate::campaign::{Campaign, ClampedRow, Data, Displacements, Observation as Row};
+use crate::observe::displacement::Displacement;
+use crate::observe::{Observation, as_declared};
 use crate::triage::{Answer, Triage, triage};
 use robstiff::Effect;
 
@@ -64,9 +64,7 @@ fn linear(campaign: &Campaign, trace: &Trace) -> Option<Campaign> {
     let is_law = |effect: &Effect| LAWS.contains(&effect.kind());
     robot.effects = trace.description.effects.iter().filter(|effect| !is_law(effect)).copied().collect();
     let data = match &campaign.data {
-        Data::Displacement(data) if data.is_whole() => {
-            Data::Displacement(displacements(data, &robot, campaign, trace)?)
-        }
+        Data::Displacement(data) if data.is_whole() => Data::Displacement(displacements(data, &robot, trace)),
         Data::Clamped(rows) => {
             let row = |(row, left): (&ClampedRow, &RowResidual)| ClampedRow {
                 deflection: robot.joints[row.axis - 1].compliance() * row.torque + left.after[0],
@@ -79,36 +77,27 @@ fn linear(campaign: &Campaign, trace: &Trace) -> Option<Campaign> {
     Some(Campaign { robot, data, ..campaign.clone() })
 }
 
-fn displacements(
-    data: &Displacements,
-    robot: &Description,
-    campaign: &Campaign,
-    trace: &Trace,
-) -> Option<Displacements> {
-    let predicted = predict(robot, campaign).ok()?;
-    let samples = Samples::of_description(robot, data);
+fn displacements(data: &Displacements, robot: &Description, trace: &Trace) -> Displacements {
+    let observation = Displacement::new(robot, data);
+    let predicted = as_declared(&observation, observation.world(), robot);
     let mut linear = data.clone();
     for (i, row) in linear.rows.iter_mut().enumerate() {
-        let in_base = Vector3::from(predicted.rows[i].predicted);
-        let as_filed = match data.measured_frame {
-            Frame::Base => in_base,
-            Frame::Tool => samples.rows[i].tcp.fixed_view::<3, 3>(0, 0).transpose() * in_base,
-        };
-        // What is left is in the frame of the file already.
-        let read = as_filed + Vector3::from(trace.residuals[i].after);
+        // Both are in the frame of the file.
+        let read = observation.moved(&predicted, i) + Vector3::from(trace.residuals[i].after);
         // The residuals of rotations and of encoders are not reported.
-        *row = Observation { displacement: read.into(), rotation: None, encoders: None, motors: None, ..row.clone() };
+        *row = Row { displacement: read.into(), rotation: None, encoders: None, motors: None, ..row.clone() };
     }
-    Some(linear)
+    linear
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::campaign::Frame;
     use crate::campaign::made::{Plan, displacements as read};
     use crate::trace::{Options, trace};
 
-    /// Of an arm whose springs are linear that is what was read, but for the second order.
+    /// Of an arm whose springs are linear that is what was read.
     #[test]
     fn what_a_linear_arm_reads_is_in_the_frame_of_the_file() {
         for measured_frame in [Frame::Base, Frame::Tool] {
@@ -116,11 +105,11 @@ mod tests {
             let found = trace(&campaign, &Options::default(), &|_| ()).expect("it can be traced");
             let linear = linear(&campaign, &found).expect("of displacements");
             let pairs = read(&campaign).rows.iter().zip(&read(&linear).rows);
-            let off = |(one, other): (&Observation, &Observation)| {
+            let off = |(one, other): (&Row, &Row)| {
                 (Vector3::from(one.displacement) - Vector3::from(other.displacement)).norm_squared()
             };
             let off = (pairs.map(off).sum::<f64>() / campaign_rows(&campaign) as f64).sqrt();
-            assert!(off < 1e-5, "{measured_frame:?} {off}");
+            assert!(off < 1e-8, "{measured_frame:?} {off}");
         }
     }
 

@@ -2,7 +2,8 @@
 
 use robstiff_robots::Description;
 
-use crate::campaign::{Campaign, Data, Holdout};
+use crate::campaign::holdout::training_of;
+use crate::campaign::{Campaign, Data};
 use crate::effects::{Scene, Shapes, What};
 use crate::model::Weight;
 use crate::observe::Observation;
@@ -10,9 +11,6 @@ use crate::observe::clamped::Clamped;
 use crate::observe::displacement::Displacement;
 use crate::observe::position::Position;
 use crate::select::Engine;
-use rand::SeedableRng;
-use rand::seq::SliceRandom;
-use rand_chacha::ChaCha8Rng;
 
 /// What a campaign reads, and what it can show.
 pub struct Case<'c> {
@@ -51,7 +49,7 @@ impl<'c> Case<'c> {
                 let alone = data.visits.len() >= data.rows.len();
                 let noise = declared.map(|noise| if alone { noise * core::f64::consts::SQRT_2 } else { noise });
                 let scene = scene(robot, What::Displacements, &observation, (torque, force), warmth, Vec::new());
-                let training = training(data.poses.len(), campaign.holdout);
+                let training = training_of(data.poses.len(), campaign);
                 let observation = Box::new(observation);
                 let (groups, group) = (data.poses.clone(), observation.readings().block.clone());
                 Self { observation, scene, training, groups, group, noise, encoders, loads: Vec::new() }
@@ -62,7 +60,7 @@ impl<'c> Case<'c> {
                 let load = if observation.payloads { 1.0 } else { 0.0 };
                 let torque = largest(&observation.torques());
                 let scene = scene(robot, What::Positions, &observation, (torque, load), warmth, Vec::new());
-                let training = training(data.poses.len(), campaign.holdout);
+                let training = training_of(data.poses.len(), campaign);
                 let observation = Box::new(observation);
                 let (groups, group) = (data.poses.clone(), observation.readings().block.clone());
                 let (noise, encoders) = (declared, Vec::new());
@@ -156,16 +154,4 @@ fn span(numbers: impl Iterator<Item = f64>) -> f64 {
         Some(ends.map_or([number; 2], |[least, most]| [least.min(number), most.max(number)]))
     });
     ends.map_or(0.0, |[least, most]| most - least)
-}
-
-/// Whether each of so many poses is fitted to. Whole poses are held out: rows of one share what is
-/// wrong with it.
-pub fn training(poses: usize, holdout: Option<Holdout>) -> Vec<bool> {
-    let mut training = vec![true; poses];
-    if let Some(holdout) = holdout {
-        let mut order: Vec<usize> = (0..poses).collect();
-        order.shuffle(&mut ChaCha8Rng::seed_from_u64(holdout.seed));
-        order[..holdout.count(poses)].iter().for_each(|&pose| training[pose] = false);
-    }
-    training
 }

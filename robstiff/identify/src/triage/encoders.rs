@@ -7,7 +7,7 @@ use std::format;
 use std::string::String;
 use std::vec::Vec;
 
-use nalgebra::Vector3;
+use nalgebra::Vector6;
 
 use super::evidence::{Evidence, Line};
 use super::randomisation::{Witness, flip};
@@ -32,7 +32,7 @@ pub(super) fn check(evidence: &Evidence<'_>) -> Unjudged {
         let sum =
             |of: &dyn Fn(usize) -> f64| -> f64 { line.rows.iter().zip(&slope).map(|(&row, w)| w * of(row)).sum() };
         // With what the motors let through, which is taken from readings elsewhere.
-        let given = |row: usize| evidence.samples.rows[row].given.fixed_rows::<3>(0).dot(&line.along);
+        let given = |row: usize| evidence.samples.rows[row].given.dot(&line.along);
         let read = sum(&|row| evidence.along(row, &line.along) + given(row));
         let joints = sum(&|row| by_joints(evidence, line, row, angles));
         // Weighed by the stroke, so that small ones do not drown it in noise.
@@ -88,14 +88,7 @@ fn by_joints(evidence: &Evidence<'_>, line: &Line, row: usize, angles: impl Fn(&
         let row = &evidence.data.rows[row];
         angles(row).map_or(0.0, |angles| angles[joint] - row.q[joint])
     };
-    let geometry = evidence.samples.geometry(sample);
-    (0..evidence.samples.joints())
-        .map(|joint| {
-            let twist = geometry.joint_twist(joint + 1);
-            let (slide, turn): (Vector3<f64>, Vector3<f64>) =
-                (twist.fixed_rows::<3>(0).into_owned(), twist.fixed_rows::<3>(3).into_owned());
-            let moves = (slide + turn.cross(&sample.marker)).dot(&line.along);
-            moves * (turned(row, joint) - still.map_or(0.0, |&still| turned(still, joint)))
-        })
-        .sum()
+    let moves = |twist: &Vector6<f64>| sample.read(twist).fixed_rows::<3>(0).dot(&line.along);
+    let beyond = |joint: usize| turned(row, joint) - still.map_or(0.0, |&still| turned(still, joint));
+    evidence.samples.twists(row).iter().enumerate().map(|(joint, twist)| moves(twist) * beyond(joint)).sum()
 }

@@ -105,7 +105,7 @@ impl<'c> Evidence<'c> {
         let measured = |(row, along): (usize, Vector6<f64>)| match self.data.measured_frame {
             Frame::Base => (row, along),
             Frame::Tool => {
-                let turn = self.samples.rows[row].tcp.fixed_view::<3, 3>(0, 0).transpose();
+                let turn = self.samples.rows[row].tcp.turn.transpose();
                 let (d, r) = (turn * along.fixed_rows::<3>(0), turn * along.fixed_rows::<3>(3));
                 (row, Vector6::new(d.x, d.y, d.z, r.x, r.y, r.z))
             }

@@ -14,9 +14,8 @@ use super::tests::{finding, plan, push};
 use super::*;
 use crate::campaign::Data;
 use crate::campaign::made::Plan;
-use crate::identify::column::Column;
 use crate::probability::normal;
-use robstiff::elements::Spring;
+use robstiff::Effect;
 
 /// 160 campaigns in which nothing is wrong with the readings, whatever the
 /// description lacks: at 1 % more than 5 say something with a probability of
@@ -29,7 +28,7 @@ fn a_clean_robot_passes() {
         plan.shares_unloaded = seed % 2 == 0;
         plan.noise = if seed % 3 == 0 { [6e-6, 9e-6, 1.5e-5] } else { [1e-5; 3] };
         if seed % 4 == 1 {
-            plan.hidden = vec![(Column::Spring(Spring::Transverse(3)), 6e-7)];
+            plan.hidden = vec![Effect::TransverseCompliance { joint: 3, value: 6e-7 }];
         }
         if seed % 4 == 2 {
             (plan.visits, plan.poses, plan.there_and_back) = (2, 24, false);

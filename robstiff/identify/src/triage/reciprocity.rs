@@ -62,8 +62,7 @@ pub(super) fn check(evidence: &Evidence<'_>) -> Unjudged {
             differences += difference * difference - noise;
             sizes +=
                 0.5 * (one.moved.fixed_rows::<3>(0).norm_squared() + other.moved.fixed_rows::<3>(0).norm_squared());
-            let tool: Vector3<f64> =
-                evidence.samples.rows[pair[0].rows[0]].tcp.fixed_view::<3, 3>(0, 0).transpose() * cross;
+            let tool: Vector3<f64> = evidence.samples.rows[pair[0].rows[0]].tcp.turn.transpose() * cross;
             witnesses.push(Witness {
                 pose: pair[0].pose,
                 visits: pair.iter().flat_map(|line| line.visits.clone()).collect(),

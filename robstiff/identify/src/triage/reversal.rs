@@ -29,7 +29,7 @@ pub(super) fn check(evidence: &Evidence<'_>) -> Unjudged {
             line.rows.iter().zip(weights).map(|(&row, w)| evidence.samples.rows[row].displacement * *w).sum()
         };
         let base = read(&contrast.weights);
-        let tool = evidence.samples.rows[line.rows[0]].tcp.fixed_view::<3, 3>(0, 0).transpose() * base;
+        let tool = evidence.samples.rows[line.rows[0]].tcp.turn.transpose() * base;
         let scores = [base.x, base.y, base.z, tool.x, tool.y, tool.z];
         for (sum, score) in even.iter_mut().zip(scores) {
             *sum = (sum.0 + score, sum.1 + contrast.information);

@@ -12,10 +12,11 @@ use rand_chacha::ChaCha8Rng;
 use super::*;
 use crate::campaign::made::{Plan, campaign};
 use crate::campaign::{ClampedRow, Data, Observation};
-use crate::identify::column::Column;
-use crate::identify::samples::Samples;
+use crate::model::Arm;
+use crate::observe::Observation as _;
+use crate::observe::displacement::Displacement;
 use crate::probability::normal;
-use robstiff::elements::Spring;
+use robstiff::Effect;
 use robstiff_robots::samples::five_axis;
 
 /// Ramps both ways in visits of their own, with a look at the unloaded arm.
@@ -100,15 +101,11 @@ fn a_turned_force_sensor_is_not_reciprocal() {
     );
     assert!((1.0..20.0).contains(&found.statistic), "{found:?}");
     // The sensor's own frame moves with the tool.
-    let samples = |campaign: &Campaign| {
-        let data = crate::campaign::made::displacements(campaign);
-        Samples::of_description(&campaign.robot, data)
-    };
-    let rows = samples(&clean.run()).rows;
+    let arm = Arm::of(&clean.robot);
     violates(
         "reciprocity",
-        &clean.run_with(|i, row| {
-            let tool: nalgebra::Matrix3<f64> = rows[i].tcp.fixed_view::<3, 3>(0, 0).into_owned();
+        &clean.run_with(|_, row| {
+            let tool = arm.stand(&row.q, &[]).tcp.turn;
             let force = tool * (turned * (tool.transpose() * force(row)));
             row.wrench[..3].copy_from_slice(force.as_slice());
         }),
@@ -278,16 +275,14 @@ fn wild_readings_are_listed() {
 /// Encoders on the output side see all of a gear and nothing of a bearing.
 #[test]
 fn encoders_tell_gears_from_bearings() {
-    let with_encoders = |hidden: Vec<(Column, f64)>, motors: bool| {
+    let with_encoders = |hidden: Vec<Effect>, motors: bool| {
         let plan = Plan { hidden, ..plan(12) };
         let exact = plan.run();
         let data = crate::campaign::made::displacements(&exact);
-        let samples = Samples::of_description(&five_axis(), data);
+        let observation = Displacement::new(&five_axis(), data);
+        let torques = observation.loaded(observation.world(), &[], &[]).torques;
         plan.run_with(|i, row| {
-            let geometry = samples.geometry(&samples.rows[i]);
-            let turned = |joint: usize| {
-                five_axis().joints[joint].compliance() * geometry.joint_twist(joint + 1).dot(&samples.rows[i].wrench)
-            };
+            let turned = |joint: usize| five_axis().joints[joint].compliance() * torques[joint][i];
             let angles = (0..5).map(|joint| row.q[joint] + turned(joint) + 1e-4).collect();
             *if motors { &mut row.motors } else { &mut row.encoders } = Some(angles);
         })
@@ -295,7 +290,7 @@ fn encoders_tell_gears_from_bearings() {
     let all = triage(&with_encoders(Vec::new(), false));
     let found = finding(&all, "encoders");
     assert!(!found.violated && found.statistic.abs() < 1.0, "{found:?}");
-    let tilt = vec![(Column::Spring(Spring::Transverse(3)), 1e-6)];
+    let tilt = vec![Effect::TransverseCompliance { joint: 3, value: 1e-6 }];
     let found = violates("encoders", &with_encoders(tilt, false));
     assert!((5.0..60.0).contains(&found.statistic), "{found:?}");
     let found = violates("encoders", &with_encoders(Vec::new(), true));

@@ -238,5 +238,5 @@ impl Covariance {
 
 /// From the base frame to that of the tool.
 fn to_tool(row: &Sample) -> Matrix3<f64> {
-    row.tcp.fixed_view::<3, 3>(0, 0).transpose()
+    row.tcp.turn.transpose()
 }

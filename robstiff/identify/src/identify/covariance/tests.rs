@@ -11,11 +11,10 @@ use super::estimated::beyond_noise;
 use super::*;
 use crate::campaign::Campaign;
 use crate::campaign::made::{Plan, displacements};
-use crate::identify::column::Column;
 use crate::identify::identify;
 use crate::identify::second_order::straightened;
 use crate::probability::normal;
-use robstiff::elements::Spring;
+use robstiff::Effect;
 
 fn estimate(plan: &Plan) -> Covariance {
     of(&plan.run())
@@ -76,7 +75,7 @@ fn axes_and_the_share_of_the_unloaded_reading_come_back() {
 fn what_a_model_lacks_does_not_pass_for_noise() {
     let plan = Plan { rotation_noise: Some([2e-5; 3]), ..Plan::new(3) };
     let plain = of(&plan.run());
-    let hidden = std::vec![(Column::Spring(Spring::Transverse(3)), 2e-6)];
+    let hidden = std::vec![Effect::TransverseCompliance { joint: 3, value: 2e-6 }];
     let turned = nalgebra::Rotation3::from_scaled_axis(Vector3::new(0.1, -0.2, 0.3));
     let lacking = Plan { hidden, ..plan }.run_with(|_, row| {
         let force = turned * Vector3::from_column_slice(&row.wrench[..3]);

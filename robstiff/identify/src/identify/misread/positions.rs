@@ -7,8 +7,8 @@ use robstiff_robots::Description;
 use super::mistakes::of_positions;
 use super::{FAR_LESS, Left, Misread, ROWS};
 use crate::campaign::Positions;
-use crate::identify::positions::model::Model;
-use crate::identify::positions::registration::Registration;
+use crate::observe::position::Position;
+use crate::observe::registration::{are_spread, registration};
 
 /// Of how far positions are from their middle, more than this is no noise, nor anything that an
 /// arm is off by.
@@ -56,9 +56,13 @@ fn spread(data: &Positions) -> Left {
 
 /// What a description leaves as it is; `None` where it puts all points on a line.
 fn left_by(robot: &Description, data: &Positions) -> Option<Left> {
-    let points = Model::new(robot, data).points(data);
-    let pairs = points.iter().zip(&data.rows).map(|(point, row)| (*point, Vector3::from(row.position)));
-    let stands = Registration::fitted(pairs.clone())?;
-    let squares = pairs.map(|(point, read)| (read - stands.placed(&point)).norm_squared()).sum();
-    Some(Left { squares, ..spread(data) })
+    let points = Position::new(robot, data).points(robot);
+    let read: Vec<Vector3<f64>> = data.rows.iter().map(|row| row.position.into()).collect();
+    are_spread(&points).then(|| {
+        let stand = registration(&points, &read);
+        let left = |(point, read): (&Vector3<f64>, &Vector3<f64>)| {
+            (read - stand.rotation * point - stand.translation.vector).norm_squared()
+        };
+        Left { squares: points.iter().zip(&read).map(left).sum(), ..spread(data) }
+    })
 }

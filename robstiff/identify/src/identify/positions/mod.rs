@@ -26,16 +26,14 @@ use std::string::String;
 use std::vec::Vec;
 
 use nalgebra::{DMatrix, DVector, Vector3};
-use robstiff_robots::Description;
 
-use self::model::{Model, State};
+use self::model::State;
 use self::own::{Own, with_values};
 use self::prepare::standing;
 use self::regression::{Regression, Rows, STANDS, Solved};
 use self::wild::wild_rows;
 use self::within::within_visits;
 use super::displacement::among_all;
-use super::prediction::{PredictedRow, Prediction};
 use super::problem::rms;
 use super::readable::is_readable;
 use super::uncertainty::{correlation, covariance};
@@ -189,24 +187,6 @@ pub fn residuals(regression: &Regression<'_>, state: &State) -> DVector<f64> {
         [left.x, left.y, left.z]
     });
     DVector::from_vec(left.collect())
-}
-
-/// Predicts the positions of a campaign with a description; where the robot stands
-/// is fitted, in the frame that positions are read in.
-///
-/// # Errors
-/// Positions that do not tell where the robot stands, numbers so large that an error is
-/// not finite.
-pub fn predict(description: &Description, data: &Positions) -> Result<Prediction, Error> {
-    let model = Model::new(description, data);
-    let registration = standing(&model, data, |_| true)?;
-    let row = |(point, row): (Vector3<f64>, &crate::campaign::PositionRow)| PredictedRow {
-        line: row.line,
-        predicted: registration.placed(&point).into(),
-        measured: row.position,
-        off: (registration.in_base(&row.position.into()) - point).into(),
-    };
-    Prediction::of(model.points(data).into_iter().zip(&data.rows).map(row).collect())
 }
 
 /// The estimates of a description's numbers after a fit; `spread` is the covariance of

@@ -5,12 +5,13 @@ use std::vec;
 
 use robstiff_robots::{Description, catalogue};
 
-use super::super::{Error, Visibility, identify as identified, predict as predicted};
-use super::model::Enters;
+use super::super::{Error, Visibility, identify as identified};
+use super::model::{Enters, Model};
 use super::*;
 use crate::campaign::Data;
 use crate::campaign::made_positions::Plan;
 use crate::identify::normal::Sign;
+use crate::predict::predict as predicted;
 use robstiff::Effect;
 use robstiff_robots::samples::{five_axis, odd};
 

@@ -14,8 +14,6 @@
 //! the tool show nothing. A model has to agree with both, which is what tells a
 //! gear from the rest.
 
-use std::vec::Vec;
-
 use crate::campaign::{Displacements, Observation};
 
 /// A row whose wrench is below this share of the largest of its visit carries no
@@ -40,6 +38,11 @@ pub struct Encoders {
 }
 
 impl Encoders {
+    /// Encoders of all of so many joints that have not turned, at so many rows.
+    pub fn of_all(joints: usize, rows: usize) -> Self {
+        Self { joints: (1..=joints).collect(), turned: vec![vec![0.0; joints]; rows], given: Vec::new() }
+    }
+
     /// The encoders of some rows.
     pub fn of(data: &Displacements) -> Self {
         let given = given(data).unwrap_or_default();
@@ -62,10 +65,10 @@ impl Encoders {
 fn given(data: &Displacements) -> Option<Vec<Vec<f64>>> {
     let motors: Vec<&[f64]> = data.rows.iter().map(|row| row.motors.as_deref()).collect::<Option<_>>()?;
     let size = |row: &Observation| row.wrench.iter().map(|w| w * w).sum::<f64>().sqrt();
-    let mut largest = std::vec![0.0_f64; data.visits.len()];
+    let mut largest = vec![0.0_f64; data.visits.len()];
     data.rows.iter().for_each(|row| largest[row.visit] = largest[row.visit].max(size(row)));
     // By visit, the sums over rows without a load and their number.
-    let mut still = std::vec![(Vec::new(), 0.0); data.visits.len()];
+    let mut still = vec![(Vec::new(), 0.0); data.visits.len()];
     for (row, motors) in data.rows.iter().zip(&motors) {
         if size(row) <= UNLOADED * largest[row.visit] {
             let (sums, count): &mut (Vec<f64>, f64) = &mut still[row.visit];

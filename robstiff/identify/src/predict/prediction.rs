@@ -1,11 +1,9 @@
 //! The error of a description, row by row.
 
-use std::vec::Vec;
-
-use super::Error;
+use crate::identify::Error;
 
 /// The error of a description on a campaign. An error is the length of a row's
-/// residual over `sqrt(3)`, throughout, so that it compares with
+/// residual over `sqrt(3)` (or the root of as many axes as are read), throughout, so that it compares with
 /// the noise of one axis.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Prediction {
@@ -33,12 +31,14 @@ pub struct PredictedRow {
     pub measured: [f64; 3],
     /// What was read less what is predicted, in the base frame (m).
     pub off: [f64; 3],
+    /// Along how many axes it is read: three, of a dial gauge one.
+    pub axes: usize,
 }
 
 impl PredictedRow {
-    /// The length of the residual over `sqrt(3)` (m).
+    /// The length of the residual over the root of the number of axes (m).
     pub fn error(&self) -> f64 {
-        (self.off.iter().map(|off| off * off).sum::<f64>() / 3.0).sqrt()
+        (self.off.iter().map(|off| off * off).sum::<f64>() / self.axes as f64).sqrt()
     }
 }
 

@@ -1,13 +1,10 @@
 //! Which poses are fitted to and which are kept for judging.
 
-use std::vec;
-use std::vec::Vec;
-
 use rand::SeedableRng;
 use rand::seq::SliceRandom;
 use rand_chacha::ChaCha8Rng;
 
-use crate::campaign::{Campaign, Holdout};
+use super::{Campaign, Holdout};
 
 /// Whether each of `poses` poses is fitted to; whole poses are held out, since
 /// rows of one pose share what is wrong with it.
