@@ -226,7 +226,8 @@ fn a_dial_gauge_alone_shows_what_the_arm_lacks() {
     for along in [[0.0, 0.0, 1.0], [0.6, 0.0, 0.8]] {
         let found = traced(&gauged(simulated(LOADS, Some(8e-6)), along));
         assert_eq!(found.verdict, Verdict::Adequate, "{} {:?}", found.why, found.noise);
-        assert!((found.after.rms / noise - 1.0).abs() < 0.1, "{}", found.after.rms);
+        // Sixty unloaded readings and 180 loaded ones scatter by some 7 %.
+        assert!((found.after.rms / noise - 1.0).abs() < 0.15, "{}", found.after.rms);
 
         let found = traced(&gauged(simulated(&format!("{LOADS}{TILT}"), Some(8e-6)), along));
         assert_eq!(names(&found), ["transverse_compliance@joint 3"], "{:?}", found.suspected);
