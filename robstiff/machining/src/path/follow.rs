@@ -4,7 +4,9 @@ use nalgebra::{Matrix4, Rotation3, SVector, Unit, UnitQuaternion, Vector3};
 use robstiff_robots::description::ON_THE_LIMIT;
 use robstiff_robots::{Diagnostic, Diagnostics, Line};
 
+use super::planned::planned;
 use super::seeds::spread;
+use super::stations::{FAR_ENOUGH, margin};
 use super::{Goal, Jump, Orientation, PathPoint, SolvedPath, ToolPath, Unreached, Unsolved, Waypoint};
 use crate::inverse::{Inverse, Target};
 use robstiff::{JointKind, Robot};
@@ -16,23 +18,67 @@ pub(crate) const MOST_SHOWN: usize = 10;
 const SAME_CHANGE: f64 = 1e-6;
 
 /// One posture a point, or why there is none.
-struct Followed<const N: usize> {
+pub(super) struct Followed<const N: usize> {
     postures: Vec<Result<SVector<f64, N>, Unreached>>,
     jumps: Vec<Jump>,
+    /// Those of the jumps that take the arm to another side of its singular places.
+    changes: usize,
     /// The largest change of a joint between neighbours (rad or m).
     largest: f64,
 }
 
+#[cfg(test)]
+impl<const N: usize> Followed<N> {
+    pub(super) fn postures(&self) -> impl Iterator<Item = Result<SVector<f64, N>, Unreached>> {
+        self.postures.iter().copied()
+    }
+
+    pub(super) fn changes(&self) -> usize {
+        self.changes
+    }
+}
+
+/// How good a way is, the least the best.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+struct Rank {
+    /// Points that are not reached.
+    missed: usize,
+    /// Jumps to another side of the arm's singular places, or by half a turn of a joint.
+    changes: usize,
+    /// By how much (deg) the worst posture is nearer to a limit or a singular place than enough.
+    nearer: u8,
+    /// All jumps: the points of a path may be so far apart that the tool leaves it without a change.
+    jumps: usize,
+}
+
+impl Rank {
+    const BEST: Self = Self { missed: 0, changes: 0, nearer: 0, jumps: 0 };
+
+    fn of<const N: usize, R: Robot<N>>(followed: &Followed<N>, inverse: &Inverse<'_, R, N>) -> Self {
+        let reached = followed.postures.iter().flatten();
+        let nearer = reached.map(|q| FAR_ENOUGH - margin(inverse, q)).max().unwrap_or(FAR_ENOUGH);
+        let missed = followed.postures.iter().filter(|q| q.is_err()).count();
+        Self { missed, changes: followed.changes, nearer, jumps: followed.jumps.len() }
+    }
+}
+
 impl ToolPath {
-    /// The joint coordinates of every point, each nearest to those of the point
-    /// before it and within the limits.
+    /// The joint coordinates of every point, within the limits.
     ///
-    /// With a `start` (rad or m) the first point is solved nearest to it. Without,
-    /// up to 16 postures at the first point are followed along the path, one of each
+    /// Where all points leave the turn about the tool's axis free, and the arm has six axes and a closed
+    /// form, the turn is planned along the whole path (see [`plan`](super::plan)): such that all points are
+    /// reached, with the fewest changes of posture, then away from limits and singular places, then with the
+    /// least movement of the joints.
+    ///
+    /// Else, and where that leaves anything to wish for, each point is solved nearest to the one before it.
+    /// Up to 16 postures at the first point are followed along the path, one of each
     /// branch of the inverse kinematics, and where the turn about the tool's axis is
     /// free several of a long one. The one is kept that reaches most points, changes
     /// its posture least often, and moves its joints least at a time; of those that
-    /// are equal in this the one nearest to the middle of the joints' ranges.
+    /// are equal in this the one nearest to the middle of the joints' ranges. The plan is kept where it is
+    /// no worse.
+    ///
+    /// With a `start` (rad or m) the first point is solved nearest to it.
     ///
     /// # Errors
     /// The points that cannot be reached, all of them.
@@ -45,6 +91,34 @@ impl ToolPath {
         start: Option<&SVector<f64, N>>,
     ) -> Result<SolvedPath<N>, Unsolved> {
         let inverse = Inverse::new(robot);
+        let planned = planned(robot, &inverse, &self.points, start, &middle(robot)).map(|postures| {
+            let followed =
+                follow(robot, &inverse, &self.points, |i, last| match (&self.points[i].goal, &postures[i]) {
+                    (_, Some(q)) => Ok(*q),
+                    // Another turn may do where the planned one does not.
+                    (Goal::Tool(target), None) => inverse.nearest(target, last.unwrap_or(&postures.near(i))),
+                    (Goal::Joints(q), None) => allowed(robot, SVector::from_column_slice(q)),
+                });
+            (Rank::of(&followed, &inverse), followed)
+        });
+        let followed = match planned {
+            Some((rank, planned)) if rank == Rank::BEST => planned,
+            Some((rank, planned)) => {
+                let stepwise = self.stepwise(robot, &inverse, start);
+                if rank <= Rank::of(&stepwise, &inverse) { planned } else { stepwise }
+            }
+            None => self.stepwise(robot, &inverse, start),
+        };
+        self.finish(robot, followed)
+    }
+
+    /// Each point nearest to the one before.
+    pub(super) fn stepwise<const N: usize, R: Robot<N>>(
+        &self,
+        robot: &R,
+        inverse: &Inverse<'_, R, N>,
+        start: Option<&SVector<f64, N>>,
+    ) -> Followed<N> {
         let middle = middle(robot);
         let seeds = match (start, self.points.first().map(|point| &point.goal)) {
             (Some(start), _) => std::vec![*start],
@@ -54,15 +128,19 @@ impl ToolPath {
             },
             (None, _) => std::vec![middle],
         };
-        let followed = seeds.iter().map(|seed| follow(robot, &inverse, &self.points, seed));
+        let followed = seeds.iter().map(|seed| {
+            follow(robot, inverse, &self.points, |i, last| match &self.points[i].goal {
+                Goal::Tool(target) => inverse.nearest(target, last.unwrap_or(seed)),
+                Goal::Joints(q) => allowed(robot, SVector::from_column_slice(q)),
+            })
+        });
         let best = followed.min_by(|one, other| {
             let rank = |of: &Followed<N>| (of.postures.iter().filter(|q| q.is_err()).count(), of.jumps.len());
             // Rounding is no reason to prefer one; the first is the nearest to the middle.
             let moves = |of: &Followed<N>| (of.largest / SAME_CHANGE).round();
             rank(one).cmp(&rank(other)).then(moves(one).total_cmp(&moves(other)))
         });
-        let best = best.expect("there is at least one seed");
-        self.finish(robot, best)
+        best.expect("there is at least one seed")
     }
 
     fn finish<const N: usize, R: Robot<N>>(&self, robot: &R, followed: Followed<N>) -> Result<SolvedPath<N>, Unsolved> {
@@ -141,20 +219,18 @@ fn middle<const N: usize, R: Robot<N>>(robot: &R) -> SVector<f64, N> {
     }))
 }
 
+/// Follows a path; `reach` gives the posture at a point (from 0) after that at the last one reached.
 fn follow<const N: usize, R: Robot<N>>(
     robot: &R,
     inverse: &Inverse<'_, R, N>,
     points: &[Waypoint],
-    seed: &SVector<f64, N>,
+    reach: impl Fn(usize, Option<&SVector<f64, N>>) -> Result<SVector<f64, N>, Unreached>,
 ) -> Followed<N> {
-    let mut followed = Followed { postures: Vec::with_capacity(points.len()), jumps: Vec::new(), largest: 0.0 };
+    let mut followed =
+        Followed { postures: Vec::with_capacity(points.len()), jumps: Vec::new(), changes: 0, largest: 0.0 };
     let mut last: Option<(usize, SVector<f64, N>, Matrix4<f64>)> = None;
-    for point in points {
-        let near = last.as_ref().map_or(seed, |(_, q, _)| q);
-        let reached = match &point.goal {
-            Goal::Tool(target) => inverse.nearest(target, near),
-            Goal::Joints(q) => allowed(robot, SVector::from_column_slice(q)),
-        };
+    for (i, point) in points.iter().enumerate() {
+        let reached = reach(i, last.as_ref().map(|(_, q, _)| q));
         followed.postures.push(reached);
         // After a point that is not reached, the next is nearest to the last that is.
         let Ok(q) = reached else { continue };
@@ -162,7 +238,11 @@ fn follow<const N: usize, R: Robot<N>>(
         if let Some((line, before, from)) = &last {
             let change = q - before;
             followed.largest = followed.largest.max(change.amax());
-            followed.jumps.extend(jump(robot, [*line, point.line], before, &change, [from, &pose]));
+            if let Some(jump) = jump(robot, [*line, point.line], before, &change, [from, &pose]) {
+                let same = inverse.side(before) == inverse.side(&q) && inverse.is_within_half_a_turn(before, &q);
+                followed.changes += usize::from(!same);
+                followed.jumps.push(jump);
+            }
         }
         last = Some((point.line, q, pose));
     }
