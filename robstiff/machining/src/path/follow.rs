@@ -1,66 +1,21 @@
-//! Solving a tool path: each point from the posture at the one before.
+//! Solving a tool path: with planned turns, or each point from the posture at the one before.
 
-use nalgebra::{Matrix4, Rotation3, SVector, Unit, UnitQuaternion, Vector3};
+use nalgebra::{Matrix4, SVector, Unit, Vector3};
 use robstiff_robots::description::ON_THE_LIMIT;
 use robstiff_robots::{Diagnostic, Diagnostics, Line};
 
 use super::planned::planned;
 use super::seeds::spread;
-use super::stations::{FAR_ENOUGH, margin};
-use super::{Goal, Jump, Orientation, PathPoint, SolvedPath, ToolPath, Unreached, Unsolved, Waypoint};
+use super::steps::{Followed, Rank, follow, position};
+use super::{Goal, Orientation, PathPoint, SolvedPath, ToolPath, Unreached, Unsolved};
 use crate::inverse::{Inverse, Target};
-use robstiff::{JointKind, Robot};
+use robstiff::Robot;
 
 /// Points that are shown with their line and why they cannot be reached or corrected.
 pub(crate) const MOST_SHOWN: usize = 10;
 
 /// Largest changes of a joint that differ by less are the same (rad or m).
 const SAME_CHANGE: f64 = 1e-6;
-
-/// One posture a point, or why there is none.
-pub(super) struct Followed<const N: usize> {
-    postures: Vec<Result<SVector<f64, N>, Unreached>>,
-    jumps: Vec<Jump>,
-    /// Those of the jumps that take the arm to another side of its singular places.
-    changes: usize,
-    /// The largest change of a joint between neighbours (rad or m).
-    largest: f64,
-}
-
-#[cfg(test)]
-impl<const N: usize> Followed<N> {
-    pub(super) fn postures(&self) -> impl Iterator<Item = Result<SVector<f64, N>, Unreached>> {
-        self.postures.iter().copied()
-    }
-
-    pub(super) fn changes(&self) -> usize {
-        self.changes
-    }
-}
-
-/// How good a way is, the least the best.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-struct Rank {
-    /// Points that are not reached.
-    missed: usize,
-    /// Jumps to another side of the arm's singular places, or by half a turn of a joint.
-    changes: usize,
-    /// By how much (deg) the worst posture is nearer to a limit or a singular place than enough.
-    nearer: u8,
-    /// All jumps: the points of a path may be so far apart that the tool leaves it without a change.
-    jumps: usize,
-}
-
-impl Rank {
-    const BEST: Self = Self { missed: 0, changes: 0, nearer: 0, jumps: 0 };
-
-    fn of<const N: usize, R: Robot<N>>(followed: &Followed<N>, inverse: &Inverse<'_, R, N>) -> Self {
-        let reached = followed.postures.iter().flatten();
-        let nearer = reached.map(|q| FAR_ENOUGH - margin(inverse, q)).max().unwrap_or(FAR_ENOUGH);
-        let missed = followed.postures.iter().filter(|q| q.is_err()).count();
-        Self { missed, changes: followed.changes, nearer, jumps: followed.jumps.len() }
-    }
-}
 
 impl ToolPath {
     /// The joint coordinates of every point, within the limits.
@@ -91,25 +46,22 @@ impl ToolPath {
         start: Option<&SVector<f64, N>>,
     ) -> Result<SolvedPath<N>, Unsolved> {
         let inverse = Inverse::new(robot);
-        let planned = planned(robot, &inverse, &self.points, start, &middle(robot)).map(|postures| {
-            let followed =
-                follow(robot, &inverse, &self.points, |i, last| match (&self.points[i].goal, &postures[i]) {
-                    (_, Some(q)) => Ok(*q),
-                    // Another turn may do where the planned one does not.
-                    (Goal::Tool(target), None) => inverse.nearest(target, last.unwrap_or(&postures.near(i))),
-                    (Goal::Joints(q), None) => allowed(robot, SVector::from_column_slice(q)),
-                });
-            (Rank::of(&followed, &inverse), followed)
-        });
-        let followed = match planned {
-            Some((rank, planned)) if rank == Rank::BEST => planned,
-            Some((rank, planned)) => {
-                let stepwise = self.stepwise(robot, &inverse, start);
-                if rank <= Rank::of(&stepwise, &inverse) { planned } else { stepwise }
-            }
-            None => self.stepwise(robot, &inverse, start),
+        let Some(plan) = planned(robot, &inverse, &self.points, start, &middle(robot)) else {
+            return self.finish(robot, self.stepwise(robot, &inverse, start));
         };
-        self.finish(robot, followed)
+        let planned = follow(robot, &self.points, |i, last| match (&self.points[i].goal, &plan.postures[i]) {
+            (_, Some(q)) => Ok(*q),
+            // Another turn may do where the planned one does not.
+            (Goal::Tool(target), None) => inverse.nearest(target, last.unwrap_or(&plan.wanted[i].near)),
+            (Goal::Joints(q), None) => allowed(robot, SVector::from_column_slice(q)),
+        });
+        let rank = |of: &Followed<N>| Rank::of(of, robot, &inverse, &plan.path);
+        let planned_rank = rank(&planned);
+        if planned_rank == Rank::BEST {
+            return self.finish(robot, planned);
+        }
+        let stepwise = self.stepwise(robot, &inverse, start);
+        self.finish(robot, if planned_rank <= rank(&stepwise) { planned } else { stepwise })
     }
 
     /// Each point nearest to the one before.
@@ -129,7 +81,7 @@ impl ToolPath {
             (None, _) => std::vec![middle],
         };
         let followed = seeds.iter().map(|seed| {
-            follow(robot, inverse, &self.points, |i, last| match &self.points[i].goal {
+            follow(robot, &self.points, |i, last| match &self.points[i].goal {
                 Goal::Tool(target) => inverse.nearest(target, last.unwrap_or(seed)),
                 Goal::Joints(q) => allowed(robot, SVector::from_column_slice(q)),
             })
@@ -173,7 +125,7 @@ impl ToolPath {
             width: point.width,
             depth: point.depth,
         });
-        Ok(SolvedPath { points: points.collect(), jumps: followed.jumps })
+        Ok(SolvedPath { points: points.collect(), jumps: followed.jumps.into_iter().map(|(_, jump)| jump).collect() })
     }
 
     /// Why a point is not reached; that is the turn about the tool's axis, where five axes
@@ -219,36 +171,6 @@ fn middle<const N: usize, R: Robot<N>>(robot: &R) -> SVector<f64, N> {
     }))
 }
 
-/// Follows a path; `reach` gives the posture at a point (from 0) after that at the last one reached.
-fn follow<const N: usize, R: Robot<N>>(
-    robot: &R,
-    inverse: &Inverse<'_, R, N>,
-    points: &[Waypoint],
-    reach: impl Fn(usize, Option<&SVector<f64, N>>) -> Result<SVector<f64, N>, Unreached>,
-) -> Followed<N> {
-    let mut followed =
-        Followed { postures: Vec::with_capacity(points.len()), jumps: Vec::new(), changes: 0, largest: 0.0 };
-    let mut last: Option<(usize, SVector<f64, N>, Matrix4<f64>)> = None;
-    for (i, point) in points.iter().enumerate() {
-        let reached = reach(i, last.as_ref().map(|(_, q, _)| q));
-        followed.postures.push(reached);
-        // After a point that is not reached, the next is nearest to the last that is.
-        let Ok(q) = reached else { continue };
-        let pose = robot.transform(&q);
-        if let Some((line, before, from)) = &last {
-            let change = q - before;
-            followed.largest = followed.largest.max(change.amax());
-            if let Some(jump) = jump(robot, [*line, point.line], before, &change, [from, &pose]) {
-                let same = inverse.side(before) == inverse.side(&q) && inverse.is_within_half_a_turn(before, &q);
-                followed.changes += usize::from(!same);
-                followed.jumps.push(jump);
-            }
-        }
-        last = Some((point.line, q, pose));
-    }
-    followed
-}
-
 fn allowed<const N: usize, R: Robot<N>>(robot: &R, q: SVector<f64, N>) -> Result<SVector<f64, N>, Unreached> {
     let kinds = robot.joint_kinds();
     let outside = |(i, limits): (usize, Option<[f64; 2]>)| {
@@ -257,43 +179,6 @@ fn allowed<const N: usize, R: Robot<N>>(robot: &R, q: SVector<f64, N>) -> Result
         (!is_inside).then_some(Unreached::OutsideLimits { joint: i + 1, kind: kinds[i], coordinate: q[i], limits })
     };
     robot.limits().into_iter().enumerate().find_map(outside).map_or(Ok(q), Err)
-}
-
-/// A change of posture, if it is one: halfway in joint coordinates the tool is
-/// off the middle by more than half of its own way (and 1 mm), or of its own
-/// turn (and 5 degrees).
-fn jump<const N: usize, R: Robot<N>>(
-    robot: &R,
-    lines: [usize; 2],
-    before: &SVector<f64, N>,
-    change: &SVector<f64, N>,
-    [from, to]: [&Matrix4<f64>; 2],
-) -> Option<Jump> {
-    let halfway = robot.transform(&(before + change * 0.5));
-    let way = (position(to) - position(from)).norm();
-    let [first, last] = [from, to].map(orientation);
-    let middle = Target {
-        position: (position(from) + position(to)) * 0.5,
-        orientation: Orientation::Full(first.try_slerp(&last, 0.5, 1e-9).unwrap_or(first).to_rotation_matrix()),
-    };
-    let off = middle.remaining(&halfway);
-    let (turn, slack) = (first.angle_to(&last), 5_f64.to_radians());
-    if off.distance <= 0.5 * way + 1e-3 && off.angle <= 0.5 * turn + slack {
-        return None;
-    }
-    let turning = robot.joint_kinds();
-    // A slide moves as far as a turn at the arm's end.
-    let size = |i: usize| if turning[i] == JointKind::Revolute { change[i].abs() } else { change[i].abs() * 2.0 };
-    let joint = (0..N).max_by(|&one, &other| size(one).total_cmp(&size(other)))?;
-    Some(Jump { lines, joint: joint + 1, change: change[joint], off })
-}
-
-fn position(pose: &Matrix4<f64>) -> Vector3<f64> {
-    pose.fixed_view::<3, 1>(0, 3).into_owned()
-}
-
-fn orientation(pose: &Matrix4<f64>) -> UnitQuaternion<f64> {
-    UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(pose.fixed_view::<3, 3>(0, 0).into_owned()))
 }
 
 /// The sum of the chords up to each point (m).

@@ -16,6 +16,7 @@ mod program_tests;
 pub(crate) mod read;
 mod seeds;
 mod stations;
+mod steps;
 #[cfg(test)]
 mod tests;
 mod turn;

@@ -7,11 +7,10 @@
 //! least movement of the joints, as the sum of their squares. Then the turns are halved about the way found.
 
 use core::cmp::Ordering;
-use core::f64::consts::PI;
 
 use nalgebra::SVector;
 
-use super::stations::{self, FAR_ENOUGH, STEP, State, Station, TURNS};
+use super::stations::{self, FAR_ENOUGH, STEP, State, Station, TURNS, leads_to, turned};
 use super::turn::FreeTurns;
 use crate::inverse::Inverse;
 use robstiff::Robot;
@@ -19,9 +18,6 @@ use robstiff::Robot;
 /// How often the steps between turns are halved, to half a degree: as the tool's axis is between
 /// neighbouring points at most, and more than that nobody sees.
 const HALVINGS: i32 = 4;
-
-/// A turn changes at most so often as fast as the tool's axis, but by a step from station to station.
-const FASTEST: f64 = 2.0;
 
 /// Movements that differ by less (rad) are the same: rounding is no reason to prefer one.
 const SAME_MOVEMENT: f64 = 1e-6;
@@ -39,6 +35,8 @@ pub struct Wanted<const N: usize> {
     pub near: SVector<f64, N>,
     /// On which sides of its singular places the arm is.
     pub side: u8,
+    /// Whether the arm changes its posture between the stations before and after it.
+    pub changing: bool,
 }
 
 /// A station with its posture.
@@ -97,7 +95,7 @@ impl<const N: usize> Plan<N> {
         if layers.is_empty() {
             return None;
         }
-        let mut stops = best(inverse, &layers, middle, |progress| STEP.max(FASTEST * progress));
+        let mut stops = best(inverse, &layers, middle);
         for halving in 1..=HALVINGS {
             let step = STEP * 0.5_f64.powi(halving);
             let layers: Vec<_> = stops
@@ -107,12 +105,12 @@ impl<const N: usize> Plan<N> {
                     let mut states = vec![stop.state];
                     if start.is_none() || stop.point > 0 {
                         states = stations::states(inverse, path, stop.point, turns, middle);
-                        states.retain(|state| is_near(inverse, &stop.state, state));
+                        states.retain(|state| leads_to(inverse, &stop.state, state, 0.0));
                     }
                     Station { point: stop.point, progress: stop.progress, states }
                 })
                 .collect();
-            stops = best(inverse, &layers, middle, |_| f64::INFINITY);
+            stops = best(inverse, &layers, middle);
         }
         Some(Self { stops })
     }
@@ -128,26 +126,19 @@ impl<const N: usize> Plan<N> {
             }
             let before = &self.stops[next.saturating_sub(1)];
             let State { turn, side, .. } = before.state;
-            // Up to a change of posture the one before it is kept.
-            let Some(after) = self.stops.get(next).filter(|after| next > 0 && !after.changed) else {
-                return Wanted { turn, near: unwound, side };
+            let Some(after) = self.stops.get(next).filter(|_| next > 0) else {
+                return Wanted { turn, near: unwound, side, changing: false };
             };
+            // Up to a change of posture the one before it is kept.
+            if after.changed {
+                return Wanted { turn, near: unwound, side, changing: before.point < point };
+            }
             let share = (at - before.progress) / (after.progress - before.progress).max(f64::MIN_POSITIVE);
             let near = unwound + inverse.change(&before.state.q, &after.state.q) * share;
-            Wanted { turn: turn + share * turned(turn, after.state.turn), near, side }
+            Wanted { turn: turn + share * turned(turn, after.state.turn), near, side, changing: false }
         });
         wanted.collect()
     }
-}
-
-/// The turn from one to another on the shorter way (rad).
-fn turned(from: f64, to: f64) -> f64 {
-    to - from - 2.0 * PI * ((to - from) / (2.0 * PI)).round()
-}
-
-/// Whether one posture leads to another without a change.
-fn is_near<const N: usize, R: Robot<N>>(inverse: &Inverse<'_, R, N>, one: &State<N>, other: &State<N>) -> bool {
-    one.side == other.side && inverse.is_within_half_a_turn(&one.q, &other.q)
 }
 
 /// The best way through the stations: first with a margin as large as can be, up to enough, then with no more
@@ -156,17 +147,15 @@ fn best<const N: usize, R: Robot<N>>(
     inverse: &Inverse<'_, R, N>,
     stations: &[Station<N>],
     middle: &SVector<f64, N>,
-    most: impl Fn(f64) -> f64,
 ) -> Vec<Stop<N>> {
-    let (stops, cost) = way(inverse, stations, middle, &most, FAR_ENOUGH);
-    if cost.nearer == 0 { stops } else { way(inverse, stations, middle, &most, FAR_ENOUGH - cost.nearer).0 }
+    let (stops, cost) = way(inverse, stations, middle, FAR_ENOUGH);
+    if cost.nearer == 0 { stops } else { way(inverse, stations, middle, FAR_ENOUGH - cost.nearer).0 }
 }
 
 fn way<const N: usize, R: Robot<N>>(
     inverse: &Inverse<'_, R, N>,
     stations: &[Station<N>],
     middle: &SVector<f64, N>,
-    most: &impl Fn(f64) -> f64,
     enough: u8,
 ) -> (Vec<Stop<N>>, Cost) {
     // Of each state the cost of the best way there, and which state that comes from.
@@ -186,7 +175,6 @@ fn way<const N: usize, R: Robot<N>>(
                 return (own(&Cost { changes: 0, nearer: 0, near: 0, movement: 0.0, begun }, 0.0), 0);
             };
             let step = (station.progress - last.progress).max(f64::MIN_POSITIVE);
-            let far = most(step) + 1e-9;
             let moved = |from: &State<N>| inverse.change(&from.q, &state.q).norm_squared();
             // A change of posture may come from anywhere.
             let changed = Cost { changes: ways[cheapest].0.changes + 1, ..ways[cheapest].0 };
@@ -195,7 +183,7 @@ fn way<const N: usize, R: Robot<N>>(
             for (index, from) in
                 last.states.iter().enumerate().skip(from).take_while(|(_, from)| from.side == state.side)
             {
-                if turned(from.turn, state.turn).abs() <= far && is_near(inverse, from, state) {
+                if leads_to(inverse, from, state, step) {
                     let cost = own(&ways[index].0, moved(from) / step);
                     if cost.order(&best.0) == Ordering::Less {
                         best = (cost, index);

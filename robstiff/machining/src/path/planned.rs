@@ -1,7 +1,6 @@
 //! The postures of a path whose turn about the tool's axis is planned.
 
 use std::collections::BTreeSet;
-use std::ops::Index;
 
 use nalgebra::SVector;
 
@@ -11,28 +10,18 @@ use super::{Goal, Waypoint, stations};
 use crate::inverse::Inverse;
 use robstiff::Robot;
 
-/// How often points between the stations that the plan does not reach become stations of a new one.
+/// How often points between the stations that the plan does not reach, or between which it changes the
+/// posture, become stations of a new one.
 const ROUNDS: usize = 3;
 
 /// A posture for each point that is reached as planned.
 pub struct Planned<const N: usize> {
-    wanted: Vec<Wanted<N>>,
-    postures: Vec<Option<SVector<f64, N>>>,
-}
-
-impl<const N: usize> Planned<N> {
-    /// A posture (rad) near the one that was planned at a point.
-    pub fn near(&self, point: usize) -> SVector<f64, N> {
-        self.wanted[point].near
-    }
-}
-
-impl<const N: usize> Index<usize> for Planned<N> {
-    type Output = Option<SVector<f64, N>>;
-
-    fn index(&self, point: usize) -> &Self::Output {
-        &self.postures[point]
-    }
+    /// The path with its turns.
+    pub path: FreeTurns,
+    /// What is planned at each point.
+    pub wanted: Vec<Wanted<N>>,
+    /// The postures (rad) of those points that are reached so.
+    pub postures: Vec<Option<SVector<f64, N>>>,
 }
 
 /// Plans the turns of a path, from the posture at its first point that is nearest to a `start` (rad), if that
@@ -61,12 +50,12 @@ pub fn planned<const N: usize, R: Robot<N>>(
             (inverse.side(&q) == wanted.side && inverse.is_within_half_a_turn(&q, &wanted.near)).then_some(q)
         };
         let postures: Vec<_> = wanted.iter().enumerate().map(solve).collect();
-        let missed = || (0..postures.len()).filter(|point| postures[*point].is_none());
+        let open = || (0..postures.len()).filter(|point| postures[*point].is_none() || wanted[*point].changing);
         // Of a path that is mostly out of reach they would be too many, and help nobody.
-        let more = missed().filter(|point| !stations.contains(point)).count();
+        let more = open().filter(|point| !stations.contains(point)).count();
         if more == 0 || more > stations.len() || round > ROUNDS {
-            return Some(Planned { wanted, postures });
+            return Some(Planned { path, wanted, postures });
         }
-        stations.extend(missed());
+        stations.extend(open());
     }
 }

@@ -14,6 +14,9 @@ pub const TURNS: usize = 36;
 /// The step between them (rad). Stations are as far apart, by the progress of the path.
 pub const STEP: f64 = TAU / TURNS as f64;
 
+/// From station to station a turn changes by a step, or so often as fast as the tool goes.
+const FASTEST: f64 = 2.0;
+
 /// The most stations, so that the longest path's fit in memory: they are farther apart then.
 const MOST: usize = 5000;
 
@@ -80,6 +83,24 @@ pub fn states<const N: usize, R: Robot<N>>(
 /// A posture at a turn.
 pub fn state<const N: usize, R: Robot<N>>(inverse: &Inverse<'_, R, N>, q: SVector<f64, N>, turn: f64) -> State<N> {
     State { q, turn, side: inverse.side(&q), margin: margin(inverse, &q) }
+}
+
+/// Whether one posture leads to another without a change, the tool going by so much (rad) on the way: on the
+/// same side of all singular places, no joint by half a turn, the tool about its axis by not too much.
+pub fn leads_to<const N: usize, R: Robot<N>>(
+    inverse: &Inverse<'_, R, N>,
+    one: &State<N>,
+    other: &State<N>,
+    progress: f64,
+) -> bool {
+    one.side == other.side
+        && turned(one.turn, other.turn).abs() <= STEP.max(FASTEST * progress) + 1e-9
+        && inverse.is_within_half_a_turn(&one.q, &other.q)
+}
+
+/// The turn from one to another on the shorter way (rad).
+pub fn turned(from: f64, to: f64) -> f64 {
+    to - from - TAU * ((to - from) / TAU).round()
 }
 
 /// How far a posture is from the nearest limit and singular place: whole degrees, [`FAR_ENOUGH`] at most.
