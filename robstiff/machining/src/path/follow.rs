@@ -45,8 +45,25 @@ impl ToolPath {
         robot: &R,
         start: Option<&SVector<f64, N>>,
     ) -> Result<SolvedPath<N>, Unsolved> {
+        self.solve_at_speeds(robot, start, &[])
+    }
+
+    /// The same where it is known how fast each joint can move (rad/s or m/s): where turns are planned, the time
+    /// by which the joints are too slow for the feed counts before their movement.
+    ///
+    /// # Errors
+    /// As [`solve`](Self::solve).
+    ///
+    /// # Panics
+    /// As [`solve`](Self::solve).
+    pub fn solve_at_speeds<const N: usize, R: Robot<N>>(
+        &self,
+        robot: &R,
+        start: Option<&SVector<f64, N>>,
+        speeds: &[f64],
+    ) -> Result<SolvedPath<N>, Unsolved> {
         let inverse = Inverse::new(robot);
-        let Some(plan) = planned(robot, &inverse, &self.points, start, &middle(robot)) else {
+        let Some(plan) = planned(robot, &inverse, &self.points, start, &middle(robot), speeds) else {
             return self.finish(robot, self.stepwise(robot, &inverse, start));
         };
         let planned = follow(robot, &self.points, |i, last| match (&self.points[i].goal, &plan.postures[i]) {

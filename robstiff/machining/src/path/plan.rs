@@ -3,8 +3,9 @@
 //! At stations along the path all postures of turns all around are laid out, and the best way through
 //! them is found by dynamic programming (Bellman 1957). One thing counts before the next, so that nothing
 //! is weighed against anything else: the fewest changes of posture; the greatest distance from limits and
-//! singular places at the worst station, as far as it is less than enough; the same at all others; the
-//! least movement of the joints, as the sum of their squares. Then the turns are halved about the way found.
+//! singular places at the worst station, as far as it is less than enough; the same at all others; where feeds
+//! and speeds of the joints are known, the least time by which these are too slow; the least movement of the
+//! joints, as the sum of their squares. Then the steps between the turns are halved about the way found.
 
 use core::cmp::Ordering;
 
@@ -19,8 +20,8 @@ use robstiff::Robot;
 /// neighbouring points at most, and more than that nobody sees.
 const HALVINGS: i32 = 4;
 
-/// Movements that differ by less (rad) are the same: rounding is no reason to prefer one.
-const SAME_MOVEMENT: f64 = 1e-6;
+/// Movements (rad) and times (s) that differ by less are the same: rounding is no reason to prefer one.
+const SAME: f64 = 1e-6;
 
 /// A planned path: a posture for each station.
 pub struct Plan<const N: usize> {
@@ -56,6 +57,8 @@ struct Cost {
     nearer: u8,
     /// The sum of the squares of that.
     near: u64,
+    /// How much longer (s) than the feed allows the joints take.
+    late: f64,
     /// The sum of the squares of what the joints move by in a step (rad).
     movement: f64,
     /// How far it begins from the middle of the joints' ranges.
@@ -65,9 +68,12 @@ struct Cost {
 impl Cost {
     fn order(&self, other: &Self) -> Ordering {
         let whole = |cost: &Self| (cost.changes, cost.nearer, cost.near);
-        let moved = |cost: &Self| (cost.movement / SAME_MOVEMENT).round();
-        let begun = || self.begun.total_cmp(&other.begun);
-        whole(self).cmp(&whole(other)).then_with(|| moved(self).total_cmp(&moved(other))).then_with(begun)
+        let rounded = |one: f64, other: f64| (one / SAME).round().total_cmp(&(other / SAME).round());
+        whole(self)
+            .cmp(&whole(other))
+            .then_with(|| rounded(self.late, other.late))
+            .then_with(|| rounded(self.movement, other.movement))
+            .then_with(|| self.begun.total_cmp(&other.begun))
     }
 }
 
@@ -95,7 +101,7 @@ impl<const N: usize> Plan<N> {
         if layers.is_empty() {
             return None;
         }
-        let mut stops = best(inverse, &layers, middle);
+        let mut stops = best(inverse, path, &layers, middle);
         for halving in 1..=HALVINGS {
             let step = STEP * 0.5_f64.powi(halving);
             let layers: Vec<_> = stops
@@ -107,10 +113,13 @@ impl<const N: usize> Plan<N> {
                         states = stations::states(inverse, path, stop.point, turns, middle);
                         states.retain(|state| leads_to(inverse, &stop.state, state, 0.0));
                     }
+                    if states.is_empty() {
+                        states.push(stop.state);
+                    }
                     Station { point: stop.point, progress: stop.progress, states }
                 })
                 .collect();
-            stops = best(inverse, &layers, middle);
+            stops = best(inverse, path, &layers, middle);
         }
         Some(Self { stops })
     }
@@ -145,15 +154,17 @@ impl<const N: usize> Plan<N> {
 /// than that asked for, so that a way that was worse up to somewhere may be better in all.
 fn best<const N: usize, R: Robot<N>>(
     inverse: &Inverse<'_, R, N>,
+    path: &FreeTurns,
     stations: &[Station<N>],
     middle: &SVector<f64, N>,
 ) -> Vec<Stop<N>> {
-    let (stops, cost) = way(inverse, stations, middle, FAR_ENOUGH);
-    if cost.nearer == 0 { stops } else { way(inverse, stations, middle, FAR_ENOUGH - cost.nearer).0 }
+    let (stops, cost) = way(inverse, path, stations, middle, FAR_ENOUGH);
+    if cost.nearer == 0 { stops } else { way(inverse, path, stations, middle, FAR_ENOUGH - cost.nearer).0 }
 }
 
 fn way<const N: usize, R: Robot<N>>(
     inverse: &Inverse<'_, R, N>,
+    path: &FreeTurns,
     stations: &[Station<N>],
     middle: &SVector<f64, N>,
     enough: u8,
@@ -164,27 +175,31 @@ fn way<const N: usize, R: Robot<N>>(
         let before = k.checked_sub(1).map(|k| (&stations[k], &ways[k]));
         let cheapest = before.map(|(_, ways)| cheapest(ways));
         let reached = station.states.iter().map(|state| {
-            let own = |from: &Cost, movement: f64| Cost {
+            let own = |from: &Cost, late: f64, movement: f64| Cost {
                 nearer: from.nearer.max(enough.saturating_sub(state.margin)),
                 near: from.near + u64::from(FAR_ENOUGH - state.margin).pow(2),
+                late: from.late + late,
                 movement: from.movement + movement,
                 ..*from
             };
             let (Some((last, ways)), Some(cheapest)) = (before, cheapest) else {
                 let begun = inverse.change(middle, &state.q).norm_squared();
-                return (own(&Cost { changes: 0, nearer: 0, near: 0, movement: 0.0, begun }, 0.0), 0);
+                return (own(&Cost { changes: 0, nearer: 0, near: 0, late: 0.0, movement: 0.0, begun }, 0.0, 0.0), 0);
             };
             let step = (station.progress - last.progress).max(f64::MIN_POSITIVE);
-            let moved = |from: &State<N>| inverse.change(&from.q, &state.q).norm_squared();
+            let reach = |index: usize, before: &Cost, step: f64| {
+                let change = inverse.change(&last.states[index].q, &state.q);
+                own(before, path.late([last.point, station.point], change.as_slice()), change.norm_squared() / step)
+            };
             // A change of posture may come from anywhere.
             let changed = Cost { changes: ways[cheapest].0.changes + 1, ..ways[cheapest].0 };
-            let mut best = (own(&changed, moved(&last.states[cheapest]) / STEP), cheapest);
+            let mut best = (reach(cheapest, &changed, STEP), cheapest);
             let from = last.states.partition_point(|from| from.side < state.side);
             for (index, from) in
                 last.states.iter().enumerate().skip(from).take_while(|(_, from)| from.side == state.side)
             {
                 if leads_to(inverse, from, state, step) {
-                    let cost = own(&ways[index].0, moved(from) / step);
+                    let cost = reach(index, &ways[index].0, step);
                     if cost.order(&best.0) == Ordering::Less {
                         best = (cost, index);
                     }

@@ -105,7 +105,7 @@ fn a_plan_is_never_worse_than_steps() {
         let steps = path.stepwise(&robot, &Inverse::new(&robot), None);
         let solved = path.solve(&robot, None).unwrap();
         let inverse = Inverse::new(&robot);
-        let free = FreeTurns::of(&path.points, inverse.scale()).unwrap();
+        let free = FreeTurns::of(&path.points, inverse.scale(), &[]).unwrap();
         let again = follow(&robot, &path.points, |i, _| Ok(solved.points[i].q));
         let [rank, greedy] = [again, steps].map(|of| Rank::of(&of, &robot, &inverse, &free));
         assert!(rank <= greedy && rank.changes_and_nearer() <= (1, 9), "lean {lean}: {rank:?} {greedy:?}");
@@ -122,6 +122,28 @@ fn a_plan_begins_where_it_is_told() {
         let solved = path.solve(&robot, Some(&start)).unwrap();
         assert!((solved.points[0].q - start).amax() < 1e-8, "{start}");
     }
+}
+
+/// Without speeds the joints move least; with a slow last joint, another shares its work.
+#[test]
+fn a_joint_that_is_too_slow_has_less_to_do() {
+    let (description, robot) = with_spindle();
+    let text = cone([1.5, 0.0, 0.8], 0.05, 60.0, 1.0, 120, 1.0);
+    let text = text.lines().map(|line| format!("{line},0.02\n")).collect::<String>();
+    let text = text.replacen("uz,0.02", "uz,feed", 1);
+    let path = read(&text, &description, Vector3::z_axis());
+    // How long the fastest joint lags behind the feed (s).
+    let late = |solved: &SolvedPath<6>, speeds: &[f64]| {
+        let ways = solved.points.windows(2).map(|pair| {
+            let needed = (0..6).map(|i| (pair[1].q[i] - pair[0].q[i]).abs() / speeds[i]).fold(0.0, f64::max);
+            (needed - (pair[1].s - pair[0].s) / 0.02).max(0.0)
+        });
+        ways.sum::<f64>()
+    };
+    let speeds = [1.0, 1.0, 1.0, 0.6, 1.0, 0.3];
+    let [free, bound] =
+        [&[][..], &speeds].map(|known| late(&path.solve_at_speeds(&robot, None, known).unwrap(), &speeds));
+    assert!(free > 0.5 && bound < 0.5 * free, "{free} {bound}");
 }
 
 #[test]
@@ -153,7 +175,7 @@ fn turns_are_measured_from_a_reference_that_does_not_spin() {
     // Through the vertical, where a projected direction would turn round.
     let rows = (-20..=20).map(|k| format!("1.5,0,0.8,{},0.0001,-1\n", 0.05 * f64::from(k)));
     let path = read(&format!("x,y,z,ux,uy,uz\n{}", rows.collect::<String>()), &description, Vector3::z_axis());
-    let free = FreeTurns::of(&path.points, 0.5).unwrap();
+    let free = FreeTurns::of(&path.points, 0.5, &[]).unwrap();
     let mut last: Option<nalgebra::Rotation3<f64>> = None;
     for point in 0..path.points.len() {
         let super::Orientation::Full(rotation) = free.target(point, 0.7).orientation else { panic!("a pose") };

@@ -25,7 +25,7 @@ pub struct Planned<const N: usize> {
 }
 
 /// Plans the turns of a path, from the posture at its first point that is nearest to a `start` (rad), if that
-/// is given; `middle` is that of the joints' ranges. `None` where a turn is not free, or the arm does not take
+/// is given; `middle` is that of the joints' ranges, `speeds` (rad/s) are theirs where they are known. `None` where a turn is not free, or the arm does not take
 /// every turn or reaches no point.
 pub fn planned<const N: usize, R: Robot<N>>(
     robot: &R,
@@ -33,8 +33,9 @@ pub fn planned<const N: usize, R: Robot<N>>(
     points: &[Waypoint],
     start: Option<&SVector<f64, N>>,
     middle: &SVector<f64, N>,
+    speeds: &[f64],
 ) -> Option<Planned<N>> {
-    let path = FreeTurns::of(points, inverse.scale()).filter(|_| inverse.takes_every_turn())?;
+    let path = FreeTurns::of(points, inverse.scale(), speeds).filter(|_| inverse.takes_every_turn())?;
     let start = match (start, &points.first()?.goal) {
         (Some(start), Goal::Tool(target)) => Some(inverse.nearest(target, start).ok()?),
         _ => None,

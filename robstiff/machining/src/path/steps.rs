@@ -26,13 +26,15 @@ pub struct Rank {
     changes: usize,
     /// By how much (deg) the worst posture is nearer to a limit or a singular place than enough.
     nearer: u8,
+    /// How much longer (ms) than the feed allows the joints take.
+    late: u64,
     /// All jumps: the points of a path may be so far apart that the tool leaves it without a change.
     jumps: usize,
 }
 
 impl Rank {
     /// Nothing is left to wish for.
-    pub const BEST: Self = Self { missed: 0, changes: 0, nearer: 0, jumps: 0 };
+    pub const BEST: Self = Self { missed: 0, changes: 0, nearer: 0, late: 0, jumps: 0 };
 
     /// That of a way along a path with free turns.
     pub fn of<const N: usize, R: Robot<N>>(
@@ -53,7 +55,15 @@ impl Rank {
                 !leads_to(inverse, &before, &after, path.progress()[point] - path.progress()[from])
             })
         };
+        let points: Vec<(usize, SVector<f64, N>)> =
+            followed.postures.iter().enumerate().filter_map(|(point, q)| Some((point, q.ok()?))).collect();
+        let late = points.windows(2).map(|pair| {
+            let [(from, before), (to, after)] = [pair[0], pair[1]];
+            path.late([from, to], (after - before).as_slice())
+        });
+        let late = (1e3 * late.sum::<f64>()).round() as u64;
         Self {
+            late,
             missed: followed.postures.len() - reached().count(),
             changes: followed.jumps.iter().filter(|(point, _)| is_change(*point)).count(),
             nearer,

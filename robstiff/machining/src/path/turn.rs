@@ -18,6 +18,10 @@ pub struct FreeTurns {
     across_tool: Vector3<f64>,
     points: Vec<Reference>,
     progress: Vec<f64>,
+    /// The time (s) up to each point as far as it is known, and how many ways up to there have none.
+    clock: Vec<(f64, usize)>,
+    /// How fast each joint can move (rad/s); empty where that is not known.
+    speeds: Vec<f64>,
 }
 
 /// A point of the path.
@@ -31,8 +35,9 @@ struct Reference {
 
 impl FreeTurns {
     /// Those of a path; `None` if not all of its points leave the turn about one axis of the tool free. A way
-    /// of `scale` (m) counts as an angle of 1 rad.
-    pub fn of(points: &[Waypoint], scale: f64) -> Option<Self> {
+    /// of `scale` (m) counts as an angle of 1 rad; `speeds` are how fast each joint can move (rad/s), empty where
+    /// that is not known.
+    pub fn of(points: &[Waypoint], scale: f64, speeds: &[f64]) -> Option<Self> {
         let mut tool: Option<Unit<Vector3<f64>>> = None;
         let mut references: Vec<Reference> = Vec::with_capacity(points.len());
         for point in points {
@@ -48,7 +53,14 @@ impl FreeTurns {
             references.push(Reference { position: *position, along, across });
         }
         let tool = tool.map(|tool| tool.into_inner() * sign(&tool))?;
-        Some(Self { tool, across_tool: across(&tool), progress: progress(&references, scale), points: references })
+        Some(Self {
+            tool,
+            across_tool: across(&tool),
+            progress: progress(&references, scale),
+            clock: clock(points, &references),
+            points: references,
+            speeds: speeds.to_vec(),
+        })
     }
 
     /// The whole pose at a point and a turn (rad).
@@ -73,6 +85,17 @@ impl FreeTurns {
     pub fn progress(&self) -> &[f64] {
         &self.progress
     }
+
+    /// How much longer (s) than the feed allows a change of the joints takes from one point to another; 0 where
+    /// no feed or no speed is known.
+    pub fn late(&self, [from, to]: [usize; 2], change: &[f64]) -> f64 {
+        let ((start, untimed), (end, untimed_too)) = (self.clock[from], self.clock[to]);
+        if untimed != untimed_too {
+            return 0.0;
+        }
+        let needed = change.iter().zip(&self.speeds).map(|(change, speed)| change.abs() / speed);
+        (needed.fold(0.0, f64::max) - (end - start)).max(0.0)
+    }
 }
 
 /// The sum up to each point of the angles of the axis and of the ways over a length (m).
@@ -85,6 +108,22 @@ fn progress(points: &[Reference], scale: f64) -> Vec<f64> {
     });
     let steps: Vec<f64> = steps.collect();
     core::iter::once(0.0).chain(steps).collect()
+}
+
+/// The time (s) up to each point, and how many ways up to there have none: rapids, and those without a feed or
+/// without a length.
+fn clock(points: &[Waypoint], references: &[Reference]) -> Vec<(f64, usize)> {
+    let mut at = (0.0, 0);
+    let ways = points.windows(2).zip(references.windows(2)).map(|(points, references)| {
+        let length = (references[1].position - references[0].position).norm();
+        match points[1].feed.filter(|feed| !points[1].rapid && *feed > 0.0 && length > 0.0) {
+            Some(feed) => at.0 += length / feed,
+            None => at.1 += 1,
+        }
+        at
+    });
+    let ways: Vec<_> = ways.collect();
+    core::iter::once((0.0, 0)).chain(ways).collect()
 }
 
 /// 1, or -1 where the largest part of a vector is negative.
