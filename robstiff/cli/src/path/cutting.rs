@@ -369,7 +369,7 @@ impl CuttingRequest {
         solved: &SolvedPath<N>,
         load: &Load,
     ) -> Result<Corrected, Failure> {
-        let compensated = compensate(robot, solved, load, Keep::of(N, self.axis)).map_err(|missed| {
+        let compensated = compensate(robot, solved, load, Keep::along(path, N, self.axis)).map_err(|missed| {
             let summary = missed.summary();
             match missed.diagnostics(path) {
                 Some(problems) => Failure::Explained(format!("{problems}\n\n{summary}")),

@@ -188,7 +188,8 @@ fn solve<const N: usize>(
     request: Option<&CuttingRequest>,
 ) -> Result<Solved, Failure> {
     let start = start.map(SVector::<f64, N>::from_column_slice);
-    let solved = path.solve(robot, start.as_ref())?;
+    let speeds = cell.map_or(&[][..], |cell| &cell.joint_speeds);
+    let solved = path.solve_at_speeds(robot, start.as_ref(), speeds)?;
     let cutting = request.map(|request| request.compute(robot, path, &solved)).transpose()?;
     let too_fast = cell.map(|cell| cell.too_fast(&solved)).unwrap_or_default();
     let points = solved.points.into_iter().map(|point| Point {

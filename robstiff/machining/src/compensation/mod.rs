@@ -42,6 +42,9 @@ pub enum Keep {
     Axis(Unit<Vector3<f64>>),
     /// The position alone: fewer than five axes.
     Position,
+    /// All of it where the arm can, else the position and the direction of the axis: six axes or more
+    /// along a path that leaves the turn about the tool free.
+    PoseOrAxis(Unit<Vector3<f64>>),
 }
 
 impl Keep {
@@ -54,7 +57,15 @@ impl Keep {
         }
     }
 
-    /// What it keeps of a pose.
+    /// The same along a path, which may leave the turn about the tool free.
+    pub fn along(path: &ToolPath, joints: usize, axis: Unit<Vector3<f64>>) -> Self {
+        match Self::of(joints, axis) {
+            Self::Pose if path.gives_axes() => Self::PoseOrAxis(axis),
+            keep => keep,
+        }
+    }
+
+    /// What it keeps of a pose, of two the first.
     pub(crate) fn target(self, pose: &Matrix4<f64>) -> Target {
         let whole = Target::pose(pose);
         match (self, whole.orientation) {
@@ -184,7 +195,14 @@ pub fn compensate<const N: usize>(
     let mut state = State::new();
     let (mut points, mut missed) = (Vec::with_capacity(path.points.len()), Vec::new());
     for (point, contact) in path.points.iter().zip(&load.contacts) {
-        match correct(robot, &inverse, point, contact, keep, &mut state) {
+        let corrected = correct(robot, &inverse, point, contact, keep, &mut state);
+        let corrected = match (corrected, keep) {
+            (Err(Uncorrectable::Unreached(_)), Keep::PoseOrAxis(axis)) => {
+                correct(robot, &inverse, point, contact, Keep::Axis(axis), &mut state)
+            }
+            (corrected, _) => corrected,
+        };
+        match corrected {
             Ok(corrected) => points.push(corrected),
             Err(why) => missed.push((point.line, why)),
         }

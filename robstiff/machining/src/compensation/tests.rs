@@ -115,6 +115,34 @@ fn corrected_poses_out_of_the_limits_are_named() {
     assert!(failed[0].to_string().ends_with("1 of 2 points cannot be corrected: line 3"));
 }
 
+/// Joint 5 stands at its limit. Where the file leaves the turn about the tool free, another turn lets it off.
+#[test]
+fn a_free_turn_is_free_for_the_correction() {
+    let text = robstiff_robots::catalogue::find("kuka-kr270-r2700").unwrap();
+    let text = format!("{text}\ntool: {{xyz: [250 mm, 0, 180 mm], rpy: [0, 90 deg, 0]}}\n");
+    let description = Description::parse("spindle.yaml", &text).unwrap();
+    let robot = Generic::<6>::new(&description).unwrap();
+    let q = SVector::from([0.0, -60.0, 90.0, 10.0, 120.0, 0.0].map(f64::to_radians));
+    let pose = robot.transform(&q);
+    let [at, axis] = [3, 2].map(|column| pose.fixed_view::<3, 1>(0, column).into_owned());
+    let text = format!("x,y,z,ux,uy,uz\n{},{},{},{},{},{}\n", at.x, at.y, at.z, axis.x, axis.y, axis.z);
+    let tool_path = ToolPath::parse("path.csv", &text, &description, Vector3::z_axis()).unwrap();
+    let path = tool_path.solve(&robot, Some(&q)).unwrap();
+    assert!((path.points[0].q - q).amax() < 1e-8);
+    assert_eq!(Keep::along(&tool_path, 6, Vector3::z_axis()), Keep::PoseOrAxis(Vector3::z_axis()));
+    let mut refused = 0;
+    for force in [500.0, -500.0] {
+        let table = ForceTable::parse("forces.csv", &format!("Fx,Fy,Fz\n{force},0,{force}\n")).unwrap();
+        let load = table.load(&path, ForceFrame::Base, Vector3::z_axis(), Surface::Side).unwrap();
+        refused += usize::from(compensate(&robot, &path, &load, Keep::Pose).is_err());
+        let found = compensate(&robot, &path, &load, Keep::along(&tool_path, 6, Vector3::z_axis())).unwrap().points[0];
+        let actual = turned(&robot.transform(&found.q), &robot.deflection(&found.q, &found.wrench));
+        let off = Keep::Axis(Vector3::z_axis()).target(&path.points[0].pose).remaining(&actual);
+        assert!(off.distance < 2e-9 && off.angle < 2e-9, "{off:?}");
+    }
+    assert_eq!(refused, 1);
+}
+
 #[test]
 fn an_arm_of_rubber_is_not_corrected_and_every_point_is_named() {
     let mut description = described("kuka-kr270-r2700");

@@ -87,6 +87,15 @@ impl Base {
         (wrist.im, (self.upper.conj() * lower).im / size)
     }
 
+    /// How far the wrist is from the first axis at most (m), or less.
+    pub fn longest(&self) -> f64 {
+        [self.shoulder, self.upper, self.lower]
+            .map(|link| link.norm_sqr().sqrt())
+            .iter()
+            .sum::<f64>()
+            .max(f64::MIN_POSITIVE)
+    }
+
     /// All ways for a place of the wrist, up to four.
     pub fn ways<const N: usize>(&self, center: &Vector3<f64>, seed: &SVector<f64, N>, mut found: impl FnMut(Way)) {
         for first in once_if_same(self.shoulders(center, seed[0]).0) {

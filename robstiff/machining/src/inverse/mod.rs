@@ -9,6 +9,7 @@
 //! solutions are those of the robot as described.
 
 mod base;
+mod closed;
 mod descent;
 mod screws;
 mod starts;
@@ -102,6 +103,21 @@ impl<'r, R: Robot<N>, const N: usize> Inverse<'r, R, N> {
             }
         }
         let mut outside = None;
+        let best = self.nearest_closed(target, seed, |q, beyond| self.note(&mut outside, target, q, beyond));
+        if let Some(q) = best {
+            return Ok(q);
+        }
+        self.search(target, seed, outside, 1).map(|found| found[0])
+    }
+
+    /// The solution of the closed form that is nearest to a seed. Hands over the candidates outside the
+    /// limits, with by how much they are and of which joint.
+    fn nearest_closed(
+        &self,
+        target: &Target,
+        seed: &SVector<f64, N>,
+        mut outside: impl FnMut(&SVector<f64, N>, (f64, usize, f64)),
+    ) -> Option<SVector<f64, N>> {
         let mut best: Option<(f64, SVector<f64, N>)> = None;
         self.closed(target, seed, |q| match self.within(&q, seed) {
             Ok(q) => {
@@ -112,12 +128,9 @@ impl<'r, R: Robot<N>, const N: usize> Inverse<'r, R, N> {
                     best = Some(((q - seed).norm_squared(), q));
                 }
             }
-            Err(beyond) => self.note(&mut outside, target, &q, beyond),
+            Err(beyond) => outside(&q, beyond),
         });
-        if let Some((_, q)) = best {
-            return Ok(q);
-        }
-        self.search(target, seed, outside, 1).map(|found| found[0])
+        best.map(|(_, q)| q)
     }
 
     /// Where a descent from the seed comes to rest within a tolerance (m, rad) of the target,

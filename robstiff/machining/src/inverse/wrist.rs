@@ -133,6 +133,17 @@ impl<const N: usize> Wrist<N> {
         Sides { ahead, bend, first: self.frame * Vector3::z(), shoulder }
     }
 
+    /// The sines of the angles from where the arm is singular, with the sign of the side: the shoulder, the
+    /// elbow, the wrist.
+    pub fn openness(&self, q: &SVector<f64, N>) -> [f64; 3] {
+        let (ahead, bend) = self.base.sides(q[1], q[2]);
+        let [fourth, fifth, last] = [3, 4, N - 1].map(|i| self.axes[i].direction);
+        let last = self.axes[4].turn(&last, Turn::new(q[4]));
+        let size = fourth.cross(&fifth).norm() * fifth.cross(&last).norm();
+        let wrist = fourth.cross(&fifth).dot(&last) / size.max(f64::MIN_POSITIVE);
+        [ahead / self.base.longest(), bend, wrist]
+    }
+
     /// The first three joints.
     pub(super) fn base(&self) -> &Base {
         &self.base

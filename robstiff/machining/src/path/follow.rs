@@ -1,13 +1,15 @@
-//! Solving a tool path: each point from the posture at the one before.
+//! Solving a tool path: with planned turns, or each point from the posture at the one before.
 
-use nalgebra::{Matrix4, Rotation3, SVector, Unit, UnitQuaternion, Vector3};
+use nalgebra::{Matrix4, SVector, Unit, Vector3};
 use robstiff_robots::description::ON_THE_LIMIT;
 use robstiff_robots::{Diagnostic, Diagnostics, Line};
 
+use super::planned::planned;
 use super::seeds::spread;
-use super::{Goal, Jump, Orientation, PathPoint, SolvedPath, ToolPath, Unreached, Unsolved, Waypoint};
+use super::steps::{Followed, Rank, follow, position};
+use super::{Goal, Orientation, PathPoint, SolvedPath, ToolPath, Unreached, Unsolved};
 use crate::inverse::{Inverse, Target};
-use robstiff::{JointKind, Robot};
+use robstiff::Robot;
 
 /// Points that are shown with their line and why they cannot be reached or corrected.
 pub(crate) const MOST_SHOWN: usize = 10;
@@ -15,24 +17,23 @@ pub(crate) const MOST_SHOWN: usize = 10;
 /// Largest changes of a joint that differ by less are the same (rad or m).
 const SAME_CHANGE: f64 = 1e-6;
 
-/// One posture a point, or why there is none.
-struct Followed<const N: usize> {
-    postures: Vec<Result<SVector<f64, N>, Unreached>>,
-    jumps: Vec<Jump>,
-    /// The largest change of a joint between neighbours (rad or m).
-    largest: f64,
-}
-
 impl ToolPath {
-    /// The joint coordinates of every point, each nearest to those of the point
-    /// before it and within the limits.
+    /// The joint coordinates of every point, within the limits.
     ///
-    /// With a `start` (rad or m) the first point is solved nearest to it. Without,
-    /// up to 16 postures at the first point are followed along the path, one of each
+    /// Where all points leave the turn about the tool's axis free, and the arm has six axes and a closed
+    /// form, the turn is planned along the whole path (see [`plan`](super::plan)): such that all points are
+    /// reached, with the fewest changes of posture, then away from limits and singular places, then with the
+    /// least movement of the joints.
+    ///
+    /// Else, and where that leaves anything to wish for, each point is solved nearest to the one before it.
+    /// Up to 16 postures at the first point are followed along the path, one of each
     /// branch of the inverse kinematics, and where the turn about the tool's axis is
     /// free several of a long one. The one is kept that reaches most points, changes
     /// its posture least often, and moves its joints least at a time; of those that
-    /// are equal in this the one nearest to the middle of the joints' ranges.
+    /// are equal in this the one nearest to the middle of the joints' ranges. The plan is kept where it is
+    /// no worse.
+    ///
+    /// With a `start` (rad or m) the first point is solved nearest to it.
     ///
     /// # Errors
     /// The points that cannot be reached, all of them.
@@ -44,7 +45,49 @@ impl ToolPath {
         robot: &R,
         start: Option<&SVector<f64, N>>,
     ) -> Result<SolvedPath<N>, Unsolved> {
+        self.solve_at_speeds(robot, start, &[])
+    }
+
+    /// The same where it is known how fast each joint can move (rad/s or m/s): where turns are planned, the time
+    /// by which the joints are too slow for the feed counts before their movement.
+    ///
+    /// # Errors
+    /// As [`solve`](Self::solve).
+    ///
+    /// # Panics
+    /// As [`solve`](Self::solve).
+    pub fn solve_at_speeds<const N: usize, R: Robot<N>>(
+        &self,
+        robot: &R,
+        start: Option<&SVector<f64, N>>,
+        speeds: &[f64],
+    ) -> Result<SolvedPath<N>, Unsolved> {
         let inverse = Inverse::new(robot);
+        let Some(plan) = planned(robot, &inverse, &self.points, start, &middle(robot), speeds) else {
+            return self.finish(robot, self.stepwise(robot, &inverse, start));
+        };
+        let planned = follow(robot, &self.points, |i, last| match (&self.points[i].goal, &plan.postures[i]) {
+            (_, Some(q)) => Ok(*q),
+            // Another turn may do where the planned one does not.
+            (Goal::Tool(target), None) => inverse.nearest(target, last.unwrap_or(&plan.wanted[i].near)),
+            (Goal::Joints(q), None) => allowed(robot, SVector::from_column_slice(q)),
+        });
+        let rank = |of: &Followed<N>| Rank::of(of, robot, &inverse, &plan.path);
+        let planned_rank = rank(&planned);
+        if planned_rank == Rank::BEST {
+            return self.finish(robot, planned);
+        }
+        let stepwise = self.stepwise(robot, &inverse, start);
+        self.finish(robot, if planned_rank <= rank(&stepwise) { planned } else { stepwise })
+    }
+
+    /// Each point nearest to the one before.
+    pub(super) fn stepwise<const N: usize, R: Robot<N>>(
+        &self,
+        robot: &R,
+        inverse: &Inverse<'_, R, N>,
+        start: Option<&SVector<f64, N>>,
+    ) -> Followed<N> {
         let middle = middle(robot);
         let seeds = match (start, self.points.first().map(|point| &point.goal)) {
             (Some(start), _) => std::vec![*start],
@@ -54,15 +97,19 @@ impl ToolPath {
             },
             (None, _) => std::vec![middle],
         };
-        let followed = seeds.iter().map(|seed| follow(robot, &inverse, &self.points, seed));
+        let followed = seeds.iter().map(|seed| {
+            follow(robot, &self.points, |i, last| match &self.points[i].goal {
+                Goal::Tool(target) => inverse.nearest(target, last.unwrap_or(seed)),
+                Goal::Joints(q) => allowed(robot, SVector::from_column_slice(q)),
+            })
+        });
         let best = followed.min_by(|one, other| {
             let rank = |of: &Followed<N>| (of.postures.iter().filter(|q| q.is_err()).count(), of.jumps.len());
             // Rounding is no reason to prefer one; the first is the nearest to the middle.
             let moves = |of: &Followed<N>| (of.largest / SAME_CHANGE).round();
             rank(one).cmp(&rank(other)).then(moves(one).total_cmp(&moves(other)))
         });
-        let best = best.expect("there is at least one seed");
-        self.finish(robot, best)
+        best.expect("there is at least one seed")
     }
 
     fn finish<const N: usize, R: Robot<N>>(&self, robot: &R, followed: Followed<N>) -> Result<SolvedPath<N>, Unsolved> {
@@ -95,7 +142,7 @@ impl ToolPath {
             width: point.width,
             depth: point.depth,
         });
-        Ok(SolvedPath { points: points.collect(), jumps: followed.jumps })
+        Ok(SolvedPath { points: points.collect(), jumps: followed.jumps.into_iter().map(|(_, jump)| jump).collect() })
     }
 
     /// Why a point is not reached; that is the turn about the tool's axis, where five axes
@@ -141,34 +188,6 @@ fn middle<const N: usize, R: Robot<N>>(robot: &R) -> SVector<f64, N> {
     }))
 }
 
-fn follow<const N: usize, R: Robot<N>>(
-    robot: &R,
-    inverse: &Inverse<'_, R, N>,
-    points: &[Waypoint],
-    seed: &SVector<f64, N>,
-) -> Followed<N> {
-    let mut followed = Followed { postures: Vec::with_capacity(points.len()), jumps: Vec::new(), largest: 0.0 };
-    let mut last: Option<(usize, SVector<f64, N>, Matrix4<f64>)> = None;
-    for point in points {
-        let near = last.as_ref().map_or(seed, |(_, q, _)| q);
-        let reached = match &point.goal {
-            Goal::Tool(target) => inverse.nearest(target, near),
-            Goal::Joints(q) => allowed(robot, SVector::from_column_slice(q)),
-        };
-        followed.postures.push(reached);
-        // After a point that is not reached, the next is nearest to the last that is.
-        let Ok(q) = reached else { continue };
-        let pose = robot.transform(&q);
-        if let Some((line, before, from)) = &last {
-            let change = q - before;
-            followed.largest = followed.largest.max(change.amax());
-            followed.jumps.extend(jump(robot, [*line, point.line], before, &change, [from, &pose]));
-        }
-        last = Some((point.line, q, pose));
-    }
-    followed
-}
-
 fn allowed<const N: usize, R: Robot<N>>(robot: &R, q: SVector<f64, N>) -> Result<SVector<f64, N>, Unreached> {
     let kinds = robot.joint_kinds();
     let outside = |(i, limits): (usize, Option<[f64; 2]>)| {
@@ -177,43 +196,6 @@ fn allowed<const N: usize, R: Robot<N>>(robot: &R, q: SVector<f64, N>) -> Result
         (!is_inside).then_some(Unreached::OutsideLimits { joint: i + 1, kind: kinds[i], coordinate: q[i], limits })
     };
     robot.limits().into_iter().enumerate().find_map(outside).map_or(Ok(q), Err)
-}
-
-/// A change of posture, if it is one: halfway in joint coordinates the tool is
-/// off the middle by more than half of its own way (and 1 mm), or of its own
-/// turn (and 5 degrees).
-fn jump<const N: usize, R: Robot<N>>(
-    robot: &R,
-    lines: [usize; 2],
-    before: &SVector<f64, N>,
-    change: &SVector<f64, N>,
-    [from, to]: [&Matrix4<f64>; 2],
-) -> Option<Jump> {
-    let halfway = robot.transform(&(before + change * 0.5));
-    let way = (position(to) - position(from)).norm();
-    let [first, last] = [from, to].map(orientation);
-    let middle = Target {
-        position: (position(from) + position(to)) * 0.5,
-        orientation: Orientation::Full(first.try_slerp(&last, 0.5, 1e-9).unwrap_or(first).to_rotation_matrix()),
-    };
-    let off = middle.remaining(&halfway);
-    let (turn, slack) = (first.angle_to(&last), 5_f64.to_radians());
-    if off.distance <= 0.5 * way + 1e-3 && off.angle <= 0.5 * turn + slack {
-        return None;
-    }
-    let turning = robot.joint_kinds();
-    // A slide moves as far as a turn at the arm's end.
-    let size = |i: usize| if turning[i] == JointKind::Revolute { change[i].abs() } else { change[i].abs() * 2.0 };
-    let joint = (0..N).max_by(|&one, &other| size(one).total_cmp(&size(other)))?;
-    Some(Jump { lines, joint: joint + 1, change: change[joint], off })
-}
-
-fn position(pose: &Matrix4<f64>) -> Vector3<f64> {
-    pose.fixed_view::<3, 1>(0, 3).into_owned()
-}
-
-fn orientation(pose: &Matrix4<f64>) -> UnitQuaternion<f64> {
-    UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(pose.fixed_view::<3, 3>(0, 0).into_owned()))
 }
 
 /// The sum of the chords up to each point (m).

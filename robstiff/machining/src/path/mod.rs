@@ -6,13 +6,20 @@
 //! for every point, or the names of all points that cannot be reached.
 
 pub(crate) mod follow;
+mod plan;
+#[cfg(test)]
+mod plan_tests;
+mod planned;
 mod program;
 #[cfg(test)]
 mod program_tests;
 pub(crate) mod read;
 mod seeds;
+mod stations;
+mod steps;
 #[cfg(test)]
 mod tests;
+mod turn;
 
 use nalgebra::{Matrix4, SVector, Unit, Vector3};
 use robstiff_robots::text::Lines;
