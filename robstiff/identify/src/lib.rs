@@ -17,6 +17,7 @@
 
 pub mod campaign;
 mod effects;
+mod fit;
 pub mod identify;
 mod judge;
 mod model;

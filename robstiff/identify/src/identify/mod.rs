@@ -5,8 +5,8 @@
 //! parameters into columns, with what `encoders` read, `covariance` asks the readings how noisy they are
 //! and `whitening` accounts for it, `problem` holds the regression in blocks of poses, `normal`
 //! solves it, `prepare` finds what the data can see (`not_shown` why nothing), and `displacement` or
-//! `clamped` puts the result together. Absolute `positions` have a regression of
-//! their own.
+//! `clamped` puts the result together. Of absolute `positions` it is the fit of
+//! [`own`](crate::fit::own) that `fitted` puts together.
 
 pub(crate) mod baseline;
 pub(crate) mod clamped;
@@ -14,6 +14,7 @@ pub(crate) mod column;
 pub(crate) mod covariance;
 pub(crate) mod displacement;
 pub(crate) mod encoders;
+pub(crate) mod fitted;
 #[cfg(test)]
 mod held_tests;
 pub(crate) mod holdout;
@@ -53,7 +54,6 @@ pub use baseline::Visibility;
 pub use clamped::without_laws;
 pub use covariance::{Basis, Covariance};
 pub use misread::{Misread, misread};
-pub use positions::Prepared as PreparedPositions;
 pub use predict::predict;
 pub use prediction::{PredictedRow, Prediction};
 pub use prepare::noise_not_used;
@@ -63,6 +63,7 @@ use self::baseline::Declared;
 use self::column::Column;
 use self::normal::Sign;
 use crate::campaign::{Campaign, Data};
+use crate::fit::noise::NoiseSource as Source;
 use robstiff::JointKind;
 use robstiff::elements::Spring;
 
@@ -126,6 +127,17 @@ pub enum NoiseSource {
     /// From what the model leaves: an upper bound, since it counts what the
     /// model lacks as noise.
     Residuals,
+}
+
+impl From<Source> for NoiseSource {
+    fn from(source: Source) -> Self {
+        match source {
+            Source::Declared => Self::Declared,
+            Source::Rounded => Self::Rounded,
+            Source::Repetitions => Self::Repetitions,
+            Source::Residuals => Self::Residuals,
+        }
+    }
 }
 
 impl NoiseSource {

@@ -73,7 +73,6 @@ pub fn problem(rows: &[ClampedRow], raw: DMatrix<f64>) -> Problem {
         axes: 1,
         shared: 1.0,
         blocks,
-        held_out: Rc::new([]),
         total: normal(rows, &white, &white_readings),
         readings: Rc::new(readings),
         white_readings: Rc::new(white_readings),

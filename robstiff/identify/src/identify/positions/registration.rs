@@ -67,14 +67,6 @@ impl Registration {
     pub fn in_base(&self, reading: &Vector3<f64>) -> Vector3<f64> {
         self.turn.inverse() * (reading - self.at)
     }
-
-    /// Moved on by a shift (m) and a small turn (rad) about a point, all in the frame
-    /// that positions are read in.
-    #[must_use]
-    pub fn moved(&self, shift: Vector3<f64>, turn: Vector3<f64>, about: &Vector3<f64>) -> Self {
-        let turn = Rotation3::new(turn);
-        Self { turn: turn * self.turn, at: about + turn * (self.at - about) + shift }
-    }
 }
 
 #[cfg(test)]
@@ -109,17 +101,5 @@ mod tests {
         assert!(of(|x| Vector3::new(x, x * x, 1e200 * x)).is_none());
         let plane = of(|x| Vector3::new(x, x * x, 1.0)).expect("no line");
         assert!((plane.turn.matrix() - nalgebra::Matrix3::identity()).amax() < 1e-12);
-    }
-
-    /// A step is what its columns say.
-    #[test]
-    fn a_step_turns_about_a_point() {
-        let start =
-            Registration { turn: Rotation3::new(Vector3::new(0.3, -1.0, 2.0)), at: Vector3::new(1.0, 2.0, 3.0) };
-        let (about, turn) = (Vector3::new(0.5, -1.0, 0.2), Vector3::new(1e-6, -2e-6, 3e-6));
-        let (point, shift) = (Vector3::new(0.7, 0.1, -0.4), Vector3::new(1e-5, 0.0, -2e-5));
-        let moved = start.moved(shift, turn, &about).placed(&point);
-        let expected = start.placed(&point) + shift + turn.cross(&(start.placed(&point) - about));
-        assert!((moved - expected).amax() < 1e-10);
     }
 }

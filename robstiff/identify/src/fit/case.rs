@@ -2,7 +2,7 @@
 
 use robstiff_robots::Description;
 
-use crate::campaign::{Campaign, Data, Holdout};
+use crate::campaign::{Campaign, Data};
 use crate::effects::{Scene, Shapes, What};
 use crate::model::Weight;
 use crate::observe::Observation;
@@ -51,7 +51,7 @@ impl<'c> Case<'c> {
                 let alone = data.visits.len() >= data.rows.len();
                 let noise = declared.map(|noise| if alone { noise * core::f64::consts::SQRT_2 } else { noise });
                 let scene = scene(robot, What::Displacements, &observation, (torque, force), warmth, Vec::new());
-                let training = training(data.poses.len(), campaign.holdout);
+                let training = training(data.poses.len(), campaign);
                 let observation = Box::new(observation);
                 let (groups, group) = (data.poses.clone(), observation.readings().block.clone());
                 Self { observation, scene, training, groups, group, noise, encoders, loads: Vec::new() }
@@ -62,7 +62,7 @@ impl<'c> Case<'c> {
                 let load = if observation.payloads { 1.0 } else { 0.0 };
                 let torque = largest(&observation.torques());
                 let scene = scene(robot, What::Positions, &observation, (torque, load), warmth, Vec::new());
-                let training = training(data.poses.len(), campaign.holdout);
+                let training = training(data.poses.len(), campaign);
                 let observation = Box::new(observation);
                 let (groups, group) = (data.poses.clone(), observation.readings().block.clone());
                 let (noise, encoders) = (declared, Vec::new());
@@ -158,14 +158,15 @@ fn span(numbers: impl Iterator<Item = f64>) -> f64 {
     ends.map_or(0.0, |[least, most]| most - least)
 }
 
-/// Whether each of so many poses is fitted to. Whole poses are held out: rows of one share what is
-/// wrong with it.
-pub fn training(poses: usize, holdout: Option<Holdout>) -> Vec<bool> {
+/// Whether each of so many poses of a campaign is fitted to. Whole poses are held out: rows of one share
+/// what is wrong with it.
+fn training(poses: usize, campaign: &Campaign) -> Vec<bool> {
     let mut training = vec![true; poses];
-    if let Some(holdout) = holdout {
+    if let Some(holdout) = campaign.holdout {
         let mut order: Vec<usize> = (0..poses).collect();
         order.shuffle(&mut ChaCha8Rng::seed_from_u64(holdout.seed));
         order[..holdout.count(poses)].iter().for_each(|&pose| training[pose] = false);
     }
+    campaign.held_out.iter().for_each(|&pose| training[pose] = false);
     training
 }
