@@ -7,12 +7,17 @@
 use std::collections::BTreeMap;
 
 use nalgebra::{DMatrix, DVector};
+use robstiff_robots::Description;
 
 use super::case::Case;
+use crate::effects::What;
 use crate::model::{Sign, Size};
+use crate::probability::{WITHIN, student};
+use crate::regression::noise::most_apart;
 use crate::select::Layout;
 use crate::select::always::{Declared, Own};
-use crate::select::engine::{Engine, Point};
+use crate::select::engine::{Engine, FINEST, Point};
+use crate::select::problem::moves;
 use crate::select::solve::Solved;
 
 /// What the readings say of a number.
@@ -38,10 +43,12 @@ pub struct Alone<'e> {
     pub solved: Solved,
     /// What the readings say of each number.
     pub shown: Vec<Shown>,
+    /// The least variance of one reading: that of its rounding.
+    least: f64,
 }
 
-/// What is likely of a number has no part in its fit: the prior is as wide as so many of those of a search.
-const WIDE: f64 = 1e4;
+/// What is likely of a number has no part in its fit: the prior is so many times as wide.
+const WIDE: f64 = 1e6;
 
 /// A number shows if its declared value is at least so many standard deviations, or its fitted one so many.
 const DECLARED_STANDS_OUT: f64 = 1.0;
@@ -59,25 +66,30 @@ const FAR_STANDS_OUT: f64 = 10.0;
 const TOLD_APART: f64 = 4.0;
 
 impl<'e> Alone<'e> {
-    /// Fits them. None where there is no fit.
-    pub fn fitted(case: &'e Case<'_>, robot: &'e robstiff_robots::Description) -> Option<Self> {
+    /// Fits them to readings whose variance is not less than that of their rounding. None where there is no fit.
+    pub fn fitted(case: &'e Case<'_>, robot: &'e Description, least: f64) -> Option<Self> {
         let mut engine = case.engine(robot);
         let own = engine.declared();
+        // An axis has few rows, and those without a load may read exactly zero: by them noise would be all growth.
+        engine.noise.may_grow &= engine.scene.what != What::Clamped;
         engine.fit_alone()?;
-        let mut layout = Layout { candidates: Vec::new(), forms: Vec::new(), ..engine.layout() };
-        for k in 0..own.len() {
-            if let Size::Of(sd) = own[k].parameter.size {
-                layout.parameters[layout.fixed + k].size = Size::Flat(WIDE * sd);
-            }
-        }
-        let solved = engine.settle(&layout)?;
+        let layout = Layout { candidates: Vec::new(), forms: Vec::new(), ..engine.layout() };
+        let likely = likely(&engine, &layout, own.len());
         let shown = vec![Shown::Seen; own.len()];
-        let mut alone = Self { engine, own, layout, solved, shown };
-        while let Some((k, shown)) = alone.least_told() {
-            alone.shown[k] = shown;
-            // A prior without width.
-            alone.layout.parameters[alone.layout.fixed + k].size = Size::Of(0.0);
+        let solved = engine.settle(&layout)?;
+        let mut alone = Self { engine, own, layout, solved, shown, least };
+        // What others hide is held before nothing but the readings says what a number is.
+        for wide in [1.0, WIDE] {
+            for k in alone.seen() {
+                alone.layout.parameters[alone.layout.fixed + k].size = Size::Flat(wide * likely[k]);
+            }
             alone.solved = alone.engine.settle(&alone.layout)?;
+            while let Some((k, shown)) = alone.least_told() {
+                alone.shown[k] = shown;
+                // A prior without width.
+                alone.layout.parameters[alone.layout.fixed + k].size = Size::Of(0.0);
+                alone.solved = alone.engine.settle(&alone.layout)?;
+            }
         }
         Some(alone)
     }
@@ -107,10 +119,31 @@ impl<'e> Alone<'e> {
         }
     }
 
-    /// One standard deviation of a number that was fitted.
+    /// One standard deviation of a number that was fitted: of the normal distribution that has the same 95 %
+    /// interval, however few readings there are.
     pub fn std(&self, k: usize) -> Option<f64> {
         let at = self.solved.fit.place(self.layout.fixed + k).filter(|_| self.shown[k] == Shown::Seen)?;
-        Some(self.solved.fit.std[at])
+        Some(self.solved.fit.std[at] * self.widened())
+    }
+
+    /// By how much standard deviations are larger than in a fit: the variance of a reading is itself known from
+    /// so many degrees of freedom only. An unloaded reading is as noisy as the others, and one of them.
+    fn widened(&self) -> f64 {
+        let (fit, before) = (&self.solved.fit, self.engine.readings_before());
+        let is_reading = |column: usize| matches!(self.layout.parameters[column].size, Size::Noise);
+        let (mut freedom, mut squares) = (fit.count + before, fit.rss + before * self.engine.prior.size.powi(2));
+        for (&column, (share, mean)) in fit.columns.iter().zip(fit.shares().into_iter().zip(&fit.mean)) {
+            match is_reading(column) {
+                true => squares += mean * mean,
+                false => freedom -= share,
+            }
+        }
+        if freedom <= 0.0 {
+            return f64::INFINITY;
+        }
+        let scatter = squares / freedom * (student(freedom) / WITHIN).powi(2);
+        let least = self.least.max(FINEST * FINEST) / self.engine.noise.of_middle_row();
+        (scatter.max(least) / fit.variance).sqrt()
     }
 
     /// The correlations of the numbers; those that were not fitted have none.
@@ -150,7 +183,8 @@ impl<'e> Alone<'e> {
         let free = self.engine.free(&self.layout)?;
         let alike = clipped.into_iter().filter_map(|k| {
             let at = free.fit.place(self.layout.fixed + k)?;
-            let (value, std, declared) = (free.fit.mean[at], free.fit.std[at], self.own[k].parameter.mean);
+            let (value, std) = (free.fit.mean[at], free.fit.std[at] * self.widened());
+            let declared = self.own[k].parameter.mean;
             let more = ((declared - value).powi(2) - value * value) / (std * std);
             (declared > 0.0 && more < TOLD_APART).then_some((more, k))
         });
@@ -169,11 +203,11 @@ impl<'e> Alone<'e> {
     fn hidden_by(&self, k: usize) -> Shown {
         let fit = &self.solved.fit;
         let Some(at) = fit.place(self.layout.fixed + k) else { return Shown::Unseen };
-        let covariance = fit.covariance();
+        let (covariance, widened) = (fit.covariance(), self.widened());
         let others = self.seen().into_iter().filter(|&other| {
             let Some(place) = fit.place(self.layout.fixed + other).filter(|_| other != k) else { return false };
             let shared = covariance[(at, place)].powi(2) / covariance[(place, place)];
-            let std = (covariance[(at, at)] - shared).max(0.0).sqrt();
+            let std = (covariance[(at, at)] - shared).max(0.0).sqrt() * widened;
             self.stands_out(k, self.own[k].parameter.mean, std)
         });
         let others: Vec<usize> = others.collect();
@@ -185,9 +219,10 @@ impl<'e> Alone<'e> {
         (0..self.own.len()).any(|k| self.solved.fit.place(self.layout.fixed + k).is_some())
     }
 
-    /// The rows that do not belong to the others.
+    /// The rows that do not belong to the others; none where these are many.
     pub fn outliers(&self) -> &[usize] {
-        self.engine.noise.rows_apart()
+        let rows = self.engine.noise.rows_apart();
+        if rows.len() > most_apart(self.engine.observation.readings().rows()) { &[] } else { rows }
     }
 
     /// What the numbers leave of every row with some values, wherever the robot stands; the table and the reflector
@@ -207,6 +242,23 @@ impl<'e> Alone<'e> {
         let point = Point { world: self.engine.point.world.clone(), values: BTreeMap::new() };
         Some(self.engine.solve(&layout, &[], (&point, 0), STEPS)?.left)
     }
+}
+
+/// What is likely of each of so many own numbers, in its unit: what a search takes for likely, or what would account for
+/// all that was read, if that is more. Readings in another unit are so many times what they should be.
+fn likely(engine: &Engine<'_>, layout: &Layout, own: usize) -> Vec<f64> {
+    let readings = engine.observation.readings();
+    let moves = moves(readings, &engine.linearise(layout, &engine.point), &engine.training);
+    let read = if readings.differences { readings.rms(&readings.values, 0..readings.rows()) } else { 0.0 };
+    let of = |k: usize| {
+        let column = layout.fixed + k;
+        let sd = match layout.parameters[column].size {
+            Size::Of(sd) => sd,
+            _ => 0.0,
+        };
+        if moves[column] > 0.0 { sd.max(read / moves[column]) } else { sd }
+    };
+    (0..own).map(of).collect()
 }
 
 /// Steps to where the robot stands.

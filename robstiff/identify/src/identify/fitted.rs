@@ -1,6 +1,7 @@
 //! The result of a fit of the description's own numbers.
 
 use nalgebra::DVector;
+use robstiff_robots::Description;
 
 use super::readable::is_readable;
 use super::{Error, Estimate, Identification, NoiseSource, Visibility};
@@ -34,7 +35,7 @@ pub fn identification(
     let rms = |left: &DVector<f64>| readings.rms(left, (0..readings.rows()).filter(|row| !outliers.contains(row)));
     Ok(Identification {
         description,
-        estimates: (0..alone.own.len()).map(|k| estimate(campaign, alone, k)).collect(),
+        estimates: (0..alone.own.len()).map(|k| estimate(&campaign.robot, alone, k)).collect(),
         correlation: alone.correlation(),
         rows: readings.rows(),
         poses,
@@ -47,11 +48,11 @@ pub fn identification(
 }
 
 /// What came of a number.
-fn estimate(campaign: &Campaign, alone: &Alone<'_>, k: usize) -> Estimate {
+pub fn estimate(robot: &Description, alone: &Alone<'_>, k: usize) -> Estimate {
     let own = &alone.own[k];
     let declared = own.parameter.mean;
     Estimate {
-        name: name(&campaign.robot, own),
+        name: name(robot, own),
         declared,
         value: alone.value(k),
         std: alone.std(k),

@@ -4,8 +4,8 @@
 //! The way of the data: `samples` brings rows to the base frame and turns
 //! parameters into columns, with what `encoders` read, `covariance` asks the readings how noisy they are
 //! and `whitening` accounts for it, `problem` holds the regression in blocks of poses, `normal`
-//! solves it, `prepare` finds what the data can see (`not_shown` why nothing), and `displacement` or
-//! `clamped` puts the result together. Of absolute `positions` it is the fit of
+//! solves it, `prepare` finds what the data can see (`not_shown` why nothing), and `displacement`
+//! puts the result together. Of absolute `positions` and `clamped` axes it is the fit of
 //! [`own`](crate::fit::own) that `fitted` puts together.
 
 pub(crate) mod baseline;

@@ -16,8 +16,6 @@ use super::samples::Samples;
 /// Readings, and the normal equations of the columns that are to explain them.
 #[derive(Clone, Debug)]
 pub struct Equations {
-    /// The readings as measured (m, rad), stacked like [`Samples::readings`].
-    pub readings: Rc<DVector<f64>>,
     /// The readings, whitened; rotations in the displacements' unit (m), axes in
     /// the frame measured in.
     pub white_readings: Rc<DVector<f64>>,
@@ -112,7 +110,6 @@ impl Problem {
         assert!(!stacked.is_empty(), "a campaign has rows to train on");
         let total = Normal::of_rows(&white, &white_readings, &stacked);
         let equations = Equations {
-            readings,
             white_readings: Rc::new(white_readings),
             axes,
             shared: weights.covariance.shared,

@@ -63,6 +63,11 @@ const FOR_OUTLIERS: f64 = 8.0;
 /// The one from which on they are beyond the tails of the others: odds of twenty.
 const FOR_BEYOND: f64 = 3.0;
 
+/// Of so many rows at most so many do not belong to the others.
+pub fn most_apart(rows: usize) -> usize {
+    ((MOST_OUTLYING * rows as f64) as usize).max(1)
+}
+
 /// What the rows share that have an encoder's level in common.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Level {
@@ -81,6 +86,8 @@ pub struct Noise {
     pub shared: f64,
     /// The growth `a` with the displacement (1/m).
     pub growth: f64,
+    /// Whether it may grow.
+    pub may_grow: bool,
     /// What brings each channel to the noise of the first.
     pub scales: Vec<f64>,
     /// Which rows of an encoder share a level, and its variance `tau` over that of one reading.
@@ -109,6 +116,7 @@ impl Noise {
             weights: vec![1.0; readings.rows()],
             shared: if has_shared(readings) { 1.0 } else { 0.0 },
             growth: 0.0,
+            may_grow: readings.differences,
             scales: (0..channels).map(|channel| if channel == 0 { 1.0 } else { lever }).collect(),
             level: (Level::Block, LEVELS[LEVELS.len() - 1]),
             outlying: 0.0,
@@ -130,7 +138,7 @@ impl Noise {
         self.learn_scales(readings, left, &rows);
         let shares: &[f64] = if has_shared(readings) { &SHARED } else { &SHARED[..1] };
         for _ in 0..2 {
-            let parts: &[f64] = if readings.differences { &PROPORTIONAL } else { &PROPORTIONAL[..1] };
+            let parts: &[f64] = if self.may_grow { &PROPORTIONAL } else { &PROPORTIONAL[..1] };
             let tried = shares.iter().flat_map(|share| parts.iter().map(move |part| (*share, *part)));
             let judged = tried.map(|(share, part)| {
                 let price = if part > 0.0 { AGAINST_GROWTH } else { 0.0 }
@@ -316,9 +324,12 @@ impl Noise {
         for &row in of_rows() {
             self.weights[row] = 1.0 - outlying[row] + outlying[row] / (WIDER * WIDER);
         }
-        // A row that is no part of the tails may be off by anything: by its own residual it is likeliest.
-        for &row in &self.beyond_tails {
-            self.weights[row] = self.weights[row].min(axes / all[row]);
+        // A row that is no part of the tails may be off by anything: by its own residual it is likeliest. Many of
+        // them are what the noise is like.
+        if self.beyond_tails.len() <= most_apart(of_rows().count()) {
+            for &row in &self.beyond_tails {
+                self.weights[row] = self.weights[row].min(axes / all[row]);
+            }
         }
     }
 
@@ -345,6 +356,11 @@ impl Noise {
     /// The covariance of one axis over some rows of a block without any discrepancy, over `s^2`.
     pub fn of_block(&self, readings: &Readings, rows: &[usize]) -> DMatrix<f64> {
         self.covariance(readings, rows, 0.0, (self.shared, self.growth))
+    }
+
+    /// The variance of the middle one of all rows over `s^2`, as weighed.
+    pub fn of_middle_row(&self) -> f64 {
+        median((0..self.weights.len()).map(|row| self.of_row(row)).collect())
     }
 
     /// The variance of a row's own reading over `s^2`, as weighed.

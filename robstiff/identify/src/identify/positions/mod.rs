@@ -38,7 +38,7 @@ pub fn identify(campaign: &Campaign, data: &Positions) -> Result<Identification,
     }
     standing(&Model::new(&campaign.robot, data), data)?;
     let case = Case::new(campaign, &campaign.robot);
-    let alone = Alone::fitted(&case, &campaign.robot).ok_or(Error::NotFinite)?;
+    let alone = Alone::fitted(&case, &campaign.robot, 0.0).ok_or(Error::NotFinite)?;
     if alone.seen().is_empty() {
         return Err(is_seen(match alone.moves_any() {
             true => "the positions scatter by more than the payloads do to any joint",
