@@ -3,11 +3,12 @@
 use std::f64::consts::PI;
 use std::fs;
 
+use nalgebra::{DMatrix, DVector};
 use rand::seq::IndexedRandom;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use robstiff_identify::campaign::{Campaign, Data, Noise};
-use robstiff_identify::identify::PreparedPositions;
+use robstiff_identify::campaign::{Campaign, Noise};
+use robstiff_identify::identify::predict;
 use robstiff_identify::trace::{Options, Trace, Verdict, trace};
 use robstiff_robots::{Description, Effect};
 
@@ -93,11 +94,21 @@ fn matters(hidden: &Hidden, positions: &Positions) -> bool {
     let noise = positions.noise[0].hypot(positions.noise[1]);
     let exact = Positions { hidden: vec![hidden.clone()], noise: [0.0; 2], ..positions.clone() };
     let campaign = read(&exact, &exact.truth, exact.reflector);
-    let Data::Position(data) = &campaign.data else { unreachable!("written as positions") };
-    let Ok(prepared) = PreparedPositions::new(&campaign, data) else { return false };
-    let (regression, start) = (prepared.regression([]), prepared.state(prepared.own.len()));
-    let solved = regression.solve(&prepared.seen(), &start, &prepared.rows);
-    solved.is_some_and(|solved| (solved.fit.rss / (3 * data.rows.len()) as f64).sqrt() >= MATTERS * noise)
+    let off = |robot: &Description| -> Option<DVector<f64>> {
+        let rows = predict(robot, &campaign).ok()?.rows;
+        Some(DVector::from_iterator(3 * rows.len(), rows.iter().flat_map(|row| row.off)))
+    };
+    let softer = |joint: usize| {
+        let mut softer = exact.truth.clone();
+        softer.joints[joint].compliance.iter_mut().for_each(|part| part.value *= 1.01);
+        off(&softer)
+    };
+    let Some(declared) = off(&exact.truth) else { return false };
+    let columns = (0..exact.truth.joints.len()).filter_map(|joint| Some(softer(joint)? - &declared));
+    let columns = DMatrix::from_columns(&columns.collect::<Vec<_>>());
+    let fitted = columns.clone().svd(true, true).solve(&declared, 1e-9 * declared.norm()).ok();
+    let left = fitted.map_or(declared.clone(), |by| declared - columns * by);
+    (left.norm_squared() / left.len() as f64).sqrt() >= MATTERS * noise
 }
 
 /// An effect of the catalogue, of a size that a robot has.

@@ -64,8 +64,8 @@ fn page(campaign: &Campaign, found: &Identification) -> String {
     if let Data::Position(data) = &campaign.data
         && !payloads_vary(data)
     {
-        page += "\nno visit has two payloads, so zeros and lengths of the table are taken as declared: what \
-            they are off by is in these compliances\n";
+        page += "\nno visit has two payloads: only where the arm stands tells these compliances from errors of the \
+            table\n";
     }
     if let (Some(declared), Some(rms)) = (found.rms_declared, found.rms) {
         page += &format!("\nerror: {} um as declared, {} um identified", micrometres(declared), micrometres(rms));
@@ -81,8 +81,8 @@ fn page(campaign: &Campaign, found: &Identification) -> String {
     if !matches!(campaign.data, Data::Displacement(_)) && !found.left_out.is_empty() {
         let lines: Vec<String> = found.left_out.iter().map(usize::to_string).collect();
         let (s, do_not) =
-            if lines.len() == 1 { ("", "does not belong, and is") } else { ("s", "do not belong, and are") };
-        page += &format!("line{s} {} {do_not} left out\n", and(&lines));
+            if lines.len() == 1 { ("", "does not belong, and has") } else { ("s", "do not belong, and have") };
+        page += &format!("line{s} {} {do_not} no part in the fit\n", and(&lines));
     }
     page
 }

@@ -18,6 +18,7 @@
 
 pub mod campaign;
 mod effects;
+mod fit;
 pub mod identify;
 mod judge;
 mod model;

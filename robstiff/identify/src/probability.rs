@@ -32,6 +32,23 @@ pub fn student_tail(t: f64, freedom: f64) -> Option<f64> {
     Some(StudentsT::new(0.0, 1.0, freedom).ok()?.sf(number(t)?))
 }
 
+/// The quantile of the standard normal distribution that has 95 % within.
+pub const WITHIN: f64 = 1.959_963_984_540_054;
+
+/// With more degrees of freedom the quantile is that of its expansion about the normal
+/// one. That of statrs 0.19 is off by 7e-6 at 1e5 of them, by 0.13 at 1e7, and is looked
+/// for without end from 1e8 on.
+const MANY: f64 = 1e4;
+
+/// The quantile of Student's distribution that has 95 % within, to 1e-7.
+pub fn student(freedom: f64) -> f64 {
+    if freedom > MANY {
+        // Abramowitz and Stegun, 26.7.5, to the first order.
+        return WITHIN + (WITHIN.powi(3) + WITHIN) / (4.0 * freedom);
+    }
+    StudentsT::new(0.0, 1.0, freedom).map_or(WITHIN, |table| table.inverse_cdf(0.975))
+}
+
 fn number(statistic: f64) -> Option<f64> {
     (!statistic.is_nan()).then(|| statistic.clamp(-LARGEST, LARGEST))
 }

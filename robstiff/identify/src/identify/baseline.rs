@@ -122,19 +122,6 @@ pub fn with_values(description: &Description, values: &[f64]) -> Description {
 }
 
 impl Declared {
-    /// The value that a description has of it.
-    pub fn of(&self, description: &Description) -> f64 {
-        match (self.effect, self.column) {
-            (None, Column::Spring(Spring::Joint(joint))) => description.joints[joint - 1].compliance(),
-            (Some(effect), column) => {
-                let own = columns_of(&description.effects[effect]).into_iter().find(|(of, _)| *of == column);
-                // A weight that has become zero has no column any more.
-                own.map_or(0.0, |(_, value)| value)
-            }
-            (None, _) => unreachable!("only joints' own compliances belong to no effect"),
-        }
-    }
-
     /// Gives a description another value of it. The parts of a compound joint keep their
     /// proportion: the measurement sees their sum.
     pub fn set(&self, description: &mut Description, value: f64) {

@@ -4,15 +4,16 @@
 //! The way of the data: `samples` brings rows to the base frame and turns
 //! parameters into columns, with what encoders read, `covariance` asks the readings how noisy they are
 //! and `whitening` accounts for it, `problem` holds the regression in blocks of poses, `normal`
-//! solves it, `prepare` finds what the data can see (`not_shown` why nothing), and `displacement` or
-//! `clamped` puts the result together. Absolute `positions` have a regression of
-//! their own.
+//! solves it, `prepare` finds what the data can see (`not_shown` why nothing), and `displacement`
+//! puts the result together. Of absolute `positions` and `clamped` axes it is the fit of
+//! [`own`](crate::fit::own) that `fitted` puts together.
 
 pub(crate) mod baseline;
 pub(crate) mod clamped;
 pub(crate) mod column;
 pub(crate) mod covariance;
 pub(crate) mod displacement;
+pub(crate) mod fitted;
 #[cfg(test)]
 mod held_tests;
 pub(crate) mod misread;
@@ -49,7 +50,6 @@ pub use baseline::Visibility;
 pub use clamped::without_laws;
 pub use covariance::{Basis, Covariance};
 pub use misread::{Misread, misread};
-pub use positions::Prepared as PreparedPositions;
 pub use prepare::noise_not_used;
 pub use scale::{ALL_JOINTS, off_by_one_factor};
 
@@ -57,6 +57,7 @@ use self::baseline::Declared;
 use self::column::Column;
 use self::normal::Sign;
 use crate::campaign::{Campaign, Data};
+use crate::fit::noise::NoiseSource as Source;
 use robstiff::JointKind;
 use robstiff::elements::Spring;
 
@@ -120,6 +121,17 @@ pub enum NoiseSource {
     /// From what the model leaves: an upper bound, since it counts what the
     /// model lacks as noise.
     Residuals,
+}
+
+impl From<Source> for NoiseSource {
+    fn from(source: Source) -> Self {
+        match source {
+            Source::Declared => Self::Declared,
+            Source::Rounded => Self::Rounded,
+            Source::Repetitions => Self::Repetitions,
+            Source::Residuals => Self::Residuals,
+        }
+    }
 }
 
 impl NoiseSource {

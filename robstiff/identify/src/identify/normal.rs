@@ -41,14 +41,6 @@ pub struct Fit {
     pub rss: f64,
 }
 
-/// What others leave of some columns.
-pub struct Projected {
-    /// The Gram matrix of what is left.
-    pub gram: DMatrix<f64>,
-    /// What of the others each column is fitted by, a column each.
-    pub shares: DMatrix<f64>,
-}
-
 /// A coefficient that is a constant and so much of others, by their place.
 #[derive(Clone, Debug, Default)]
 pub struct Tie {
@@ -87,26 +79,6 @@ impl Normal {
         Self::sum(rows.chunks(COPIED).map(part)).unwrap_or_else(|| part(&[]))
     }
 
-    /// The same for a few columns.
-    pub fn small(x: &DMatrix<f64>, y: &DVector<f64>) -> Self {
-        Self { gram: x.tr_mul(x), moment: x.tr_mul(y), energy: y.norm_squared(), rows: y.len() }
-    }
-
-    /// The normal equations of some of the columns, in the order given.
-    pub fn of(&self, columns: &[usize]) -> Self {
-        Self { gram: self.gram_of(columns), moment: self.moment_of(columns), energy: self.energy, rows: self.rows }
-    }
-
-    /// The same without a block of rows that is part of it.
-    pub fn without(&self, block: &Self) -> Self {
-        Self {
-            gram: &self.gram - &block.gram,
-            moment: &self.moment - &block.moment,
-            energy: self.energy - block.energy,
-            rows: self.rows - block.rows,
-        }
-    }
-
     /// The sum over blocks of rows; `None` without any.
     pub fn sum(blocks: impl IntoIterator<Item = Self>) -> Option<Self> {
         let mut blocks = blocks.into_iter();
@@ -134,15 +106,6 @@ impl Normal {
     pub fn rss(&self, columns: &[usize], coefficients: &DVector<f64>) -> f64 {
         let quadratic = coefficients.dot(&(self.gram_of(columns) * coefficients));
         (self.energy - 2.0 * coefficients.dot(&self.moment_of(columns)) + quadratic).max(0.0)
-    }
-
-    /// Some columns with what others account for taken out of them; `factor` is of the Gram
-    /// matrix of those others.
-    pub fn projected(&self, columns: &[usize], factor: &Scaled, others: &[usize]) -> Projected {
-        let cross = DMatrix::from_fn(others.len(), columns.len(), |i, j| self.gram[(others[i], columns[j])]);
-        let shares = factor.solve_columns(&cross);
-        let gram = self.gram_of(columns) - transposed_times(&cross, &shares);
-        Projected { gram, shares }
     }
 
     /// Ordinary least squares on some columns; `None` where they are collinear.
@@ -224,12 +187,6 @@ impl Normal {
     pub fn inverse(&self, columns: &[usize]) -> Option<DMatrix<f64>> {
         Some(Scaled::new(self, columns)?.inverse())
     }
-}
-
-/// `a^T b`. The product of two stored matrices is the one that is fast: `tr_mul` goes by scalar
-/// products of columns.
-pub fn transposed_times(a: &DMatrix<f64>, b: &DMatrix<f64>) -> DMatrix<f64> {
-    a.transpose() * b
 }
 
 /// Rows whose products are added to a Gram matrix at once, and columns of a strip of it.
@@ -371,16 +328,14 @@ mod tests {
     }
 
     #[test]
-    fn blocks_add_up_and_can_be_left_out() {
+    fn blocks_add_up() {
         let (whole, x, y) = problem(7);
         let part =
             |from: usize, rows: usize| Normal::new(&x.rows(from, rows).into_owned(), &y.rows(from, rows).into_owned());
         let (first, second) = (part(0, 15), part(15, 25));
-        let sum = Normal::sum([first.clone(), second.clone()]).expect("two blocks");
+        let sum = Normal::sum([first, second]).expect("two blocks");
         assert!((&sum.gram - &whole.gram).amax() < 1e-9 * whole.gram.amax());
-        let rest = whole.without(&first);
-        assert!((&rest.moment - &second.moment).amax() < 1e-9 * whole.moment.amax());
-        assert_eq!(rest.rows, 25);
+        assert_eq!(sum.rows, 40);
     }
 
     #[test]

@@ -10,14 +10,12 @@ use nalgebra::{DMatrix, DVector};
 
 use super::column::Column;
 use super::covariance::Covariance;
-use super::normal::{Fit, Normal, Sign};
+use super::normal::{Fit, Normal};
 use super::samples::Samples;
 
 /// Readings, and the normal equations of the columns that are to explain them.
 #[derive(Clone, Debug)]
 pub struct Equations {
-    /// The readings as measured (m, rad), stacked like [`Samples::readings`].
-    pub readings: Rc<DVector<f64>>,
     /// The readings, whitened; rotations in the displacements' unit (m), axes in
     /// the frame measured in.
     pub white_readings: Rc<DVector<f64>>,
@@ -27,8 +25,6 @@ pub struct Equations {
     pub shared: f64,
     /// The blocks the problem is fitted to.
     pub blocks: Rc<[Block]>,
-    /// The blocks kept for judging.
-    pub held_out: Rc<[Block]>,
     /// The normal equations of all blocks fitted to.
     pub total: Normal,
 }
@@ -60,15 +56,6 @@ pub struct Block {
     pub rows: Vec<usize>,
     /// Their indices in the stacked vectors.
     pub stacked: Vec<usize>,
-}
-
-impl Block {
-    /// Of so many rows of the campaign, whether each is in one of some blocks.
-    pub fn among(blocks: &[Self], rows: usize) -> Vec<bool> {
-        let mut among = vec![false; rows];
-        blocks.iter().flat_map(|block| &block.rows).for_each(|&row| among[row] = true);
-        among
-    }
 }
 
 /// How a campaign's rows are weighed.
@@ -108,7 +95,7 @@ impl Problem {
         for (i, row) in samples.rows.iter().enumerate().filter(|&(i, _)| !weights.left_out[i]) {
             rows[row.pose].push(i);
         }
-        let (blocks, held_out): (Vec<Block>, Vec<Block>) = rows
+        let blocks: Vec<Block> = rows
             .into_iter()
             .enumerate()
             .filter(|(_, rows)| !rows.is_empty())
@@ -117,41 +104,19 @@ impl Problem {
                 let stacked = of_tool.chain(rows.iter().flat_map(|&row| samples.encoders_of(row))).collect();
                 Block { pose, rows, stacked }
             })
-            .partition(|block: &Block| weights.training[block.pose]);
+            .filter(|block: &Block| weights.training[block.pose])
+            .collect();
         let stacked: Vec<usize> = blocks.iter().flat_map(|block| block.stacked.iter().copied()).collect();
         assert!(!stacked.is_empty(), "a campaign has rows to train on");
         let total = Normal::of_rows(&white, &white_readings, &stacked);
         let equations = Equations {
-            readings,
             white_readings: Rc::new(white_readings),
             axes,
             shared: weights.covariance.shared,
             blocks: blocks.into(),
-            held_out: held_out.into(),
             total,
         };
         Self { equations, white }
-    }
-
-    /// The normal equations of one block, of some of the columns in the order
-    /// given.
-    pub fn normal(&self, block: &Block, columns: &[usize]) -> Normal {
-        let x = DMatrix::from_fn(block.stacked.len(), columns.len(), |i, j| self.white[(block.stacked[i], columns[j])]);
-        let y = DVector::from_fn(block.stacked.len(), |i, _| self.white_readings[block.stacked[i]]);
-        Normal::small(&x, &y)
-    }
-
-    /// The coefficients of some columns without one of the blocks, by least
-    /// squares with or without signs; `None` where that block alone sees a
-    /// column.
-    pub fn solve_without(&self, block: &Block, columns: &[usize], signs: Option<&[Sign]>) -> Option<DVector<f64>> {
-        let rest = self.total.of(columns).without(&self.normal(block, columns));
-        let all: Vec<usize> = (0..columns.len()).collect();
-        let fit = match signs {
-            Some(signs) => rest.solve_signed(&all, signs),
-            None => rest.solve(&all),
-        };
-        fit.map(|fit| fit.coefficients)
     }
 
     /// What is left of the whitened readings, stacked (m).
@@ -162,33 +127,9 @@ impl Problem {
         }
         left
     }
-
-    /// What is left of a block's whitened readings (m).
-    pub fn block_residuals(&self, block: &Block, columns: &[usize], coefficients: &DVector<f64>) -> DVector<f64> {
-        DVector::from_fn(block.stacked.len(), |i, _| {
-            let row = block.stacked[i];
-            let fitted = columns.iter().zip(coefficients.iter()).map(|(&column, b)| self.white[(row, column)] * b);
-            self.white_readings[row] - fitted.sum::<f64>()
-        })
-    }
 }
 
 impl Equations {
-    /// The same of some of the columns, in the order given; `white` holds these,
-    /// whitened.
-    pub fn with(&self, columns: &[usize], white: DMatrix<f64>) -> Problem {
-        let equations = Self {
-            readings: Rc::clone(&self.readings),
-            white_readings: Rc::clone(&self.white_readings),
-            axes: self.axes,
-            shared: self.shared,
-            blocks: Rc::clone(&self.blocks),
-            held_out: Rc::clone(&self.held_out),
-            total: self.total.of(columns),
-        };
-        Problem { equations, white }
-    }
-
     /// The degrees of freedom that a fit leaves, at least one.
     pub fn freedom(&self, fit: &Fit) -> f64 {
         self.total.rows.saturating_sub(fit.columns.len()).max(1) as f64

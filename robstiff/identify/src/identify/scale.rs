@@ -197,7 +197,7 @@ mod tests {
             let mut rows = rows.clone();
             rows.iter_mut().for_each(|row| row.deflection *= times);
             let campaign = crate::campaign::made::campaign(robot.clone(), Data::Clamped(rows));
-            let found = crate::identify::clamped::slopes(&campaign, clamped(&campaign), &[]).expect("all are loaded");
+            let found = crate::identify::clamped::identify(&campaign, clamped(&campaign)).expect("all are loaded");
             other_unit(&campaign, &found.estimates)
         };
         for (times, said) in [

@@ -27,10 +27,10 @@
 use std::vec::Vec;
 
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
-use statrs::distribution::{ContinuousCDF, StudentsT};
 
 use super::normal::{Fit, Scaled, Sign};
 use super::problem::{Block, Problem};
+use crate::probability::{WITHIN, student};
 
 /// With fewer poses than this for each coefficient the sandwich has no basis;
 /// the residual variance then has to do.
@@ -47,9 +47,6 @@ const DECLARED: f64 = 10.0;
 /// Of what a pose alone decides, this share of its readings' variance is left
 /// by the fit or less.
 const ALONE: f64 = 1e-9;
-
-/// The quantile of the standard normal distribution that has 95 % within.
-pub const WITHIN: f64 = 1.959_963_984_540_054;
 
 /// The covariance of a fit's coefficients; `signs` are those of its columns, `noise` that
 /// of a whitened reading (m), where it is declared. A coefficient that is held at zero by
@@ -172,20 +169,6 @@ fn of_free(problem: &Problem, fit: &Fit, free: &[usize], known: &[f64], noise: O
         told.max((least / sandwich[(k, k)].max(f64::MIN_POSITIVE)).sqrt())
     });
     Some(DMatrix::from_fn(columns.len(), columns.len(), |i, j| sandwich[(i, j)] * factor[i] * factor[j]))
-}
-
-/// With more degrees of freedom the quantile is that of its expansion about the normal
-/// one. That of statrs 0.19 is off by 7e-6 at 1e5 of them, by 0.13 at 1e7, and is looked
-/// for without end from 1e8 on.
-const MANY: f64 = 1e4;
-
-/// The quantile of Student's distribution that has 95 % within, to 1e-7.
-pub fn student(freedom: f64) -> f64 {
-    if freedom > MANY {
-        // Abramowitz and Stegun, 26.7.5, to the first order.
-        return WITHIN + (WITHIN.powi(3) + WITHIN) / (4.0 * freedom);
-    }
-    StudentsT::new(0.0, 1.0, freedom).map_or(WITHIN, |table| table.inverse_cdf(0.975))
 }
 
 /// The degrees of freedom of the variance of the coefficients along a vector

@@ -22,6 +22,10 @@ pub fn registration(points: &[Vector3<f64>], read: &[Vector3<f64>]) -> Isometry3
     Isometry3::from_parts(Translation3::from(to - turn * from), turn)
 }
 
+/// What is said of points that do not.
+pub const NOT_SPREAD: &str =
+    "the positions do not tell where the robot stands: they are fewer than three, or on a line by its description";
+
 /// Whether points tell how a frame is turned: they are three or more, finite, and not on a line.
 pub fn are_spread(points: &[Vector3<f64>]) -> bool {
     let middle = mean(points);

@@ -18,10 +18,10 @@ use super::regressors::Visit;
 use super::space::{Space, directions};
 use crate::campaign::{AXES, Campaign, Data, Displacements, Frame, Noise, Observation as Row};
 use crate::effects::Side;
+use crate::fit::case::Case;
 use crate::identify::Error;
 use crate::model::Size;
 use crate::select::Layout;
-use crate::trace::case::Case;
 
 /// The loads of a visit as shares of its greatest: up, and down again, so that play and friction show.
 pub const RAMP: [f64; 4] = [0.25, 0.5, 1.0, 0.5];

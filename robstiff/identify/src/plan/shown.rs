@@ -13,6 +13,7 @@ use super::regressors::{ENCODER_NOISE, LEVELS, PAYLOADS, REACH, ROTATION_NOISE, 
 use super::rivals::{Group, Rivals};
 use super::source::Source;
 use crate::campaign::{Campaign, Data, Displacements, PositionRow, Positions};
+use crate::fit::case::Case;
 use crate::identify::Error;
 use crate::model::{At, Parameter, Term, World};
 use crate::observe::displacement::Displacement;
@@ -21,7 +22,6 @@ use crate::observe::{Observation, Readings};
 use crate::regression::gram::of_each_block;
 use crate::regression::noise::{DISCREPANCIES, Noise};
 use crate::trace::Trace;
-use crate::trace::case::Case;
 
 /// A traced campaign, with the numbers that planning looks at.
 pub struct Shown<'c> {

@@ -14,7 +14,7 @@ use crate::campaign::{Campaign, Data, Displacements, PositionRow, Positions};
 use crate::identify::Error;
 use crate::observe::displacement::Displacement;
 use crate::observe::position::Position;
-use crate::observe::registration::{are_spread, registration};
+use crate::observe::registration::{NOT_SPREAD, are_spread, registration};
 use crate::observe::{Observation, as_declared};
 
 /// Predicts the rows of a campaign with a description, which need not be the
@@ -64,9 +64,7 @@ fn positions(description: &Description, data: &Positions) -> Result<Prediction, 
     let points = Position::new(description, data).points(description);
     let read: Vec<Vector3<f64>> = data.rows.iter().map(|row| row.position.into()).collect();
     if !are_spread(&points) {
-        return Err(Error::NotShown(String::from(
-            "the positions do not tell where the robot stands: they are fewer than three, or on a line by its description",
-        )));
+        return Err(Error::NotShown(NOT_SPREAD.to_owned()));
     }
     let stand = registration(&points, &read);
     let row = |(point, row): (&Vector3<f64>, &PositionRow)| {

@@ -74,6 +74,10 @@ pub struct Fit {
     pub std: DVector<f64>,
     /// The variance of one reading.
     pub variance: f64,
+    /// The sum of the squares of the whitened residuals.
+    pub rss: f64,
+    /// How many readings there are.
+    pub count: f64,
     /// The scales of learned priors.
     pub scales: Scales,
     posterior: Posterior,
@@ -173,7 +177,9 @@ pub fn fit(
             let mean = DVector::from_fn(n, |k, _| beta[k] + mean[k]);
             let posterior = Posterior { factor, sd, white, energy: energy / variance };
             let columns = columns.to_vec();
-            return evidence.is_finite().then_some(Fit { evidence, columns, mean, std, variance, scales, posterior });
+            let (rss, count) = (rss.max(0.0), gram.count);
+            let fit = Fit { evidence, columns, mean, std, variance, rss, count, scales, posterior };
+            return fit.evidence.is_finite().then_some(fit);
         }
         variance = next;
         for group in 0..scales.now.len() {
@@ -245,6 +251,13 @@ impl Fit {
     /// The posterior mean of a column's number; zero where it has no part.
     pub fn value(&self, column: usize) -> f64 {
         self.place(column).map_or(0.0, |at| self.mean[at])
+    }
+
+    /// Which part of each number the readings say, and not what was likely before: together, how many of
+    /// them they pay for.
+    pub fn shares(&self) -> Vec<f64> {
+        let share = |(std, sd): (&f64, &f64)| if *sd > 0.0 { 1.0 - (std / sd).powi(2) } else { 0.0 };
+        self.std.iter().zip(&self.posterior.sd).map(share).collect()
     }
 
     /// The covariance of the numbers.

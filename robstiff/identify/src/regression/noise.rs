@@ -58,6 +58,16 @@ const MOST_OUTLYING: f64 = 0.1;
 /// A row with less weight than this is outlying.
 pub const OUTLYING: f64 = 0.3;
 
+/// The log-likelihood ratio from which on rows are reported as outlying: odds of three thousand.
+const FOR_OUTLIERS: f64 = 8.0;
+/// The one from which on they are beyond the tails of the others: odds of twenty.
+const FOR_BEYOND: f64 = 3.0;
+
+/// Of so many rows at most so many do not belong to the others.
+pub fn most_apart(rows: usize) -> usize {
+    ((MOST_OUTLYING * rows as f64) as usize).max(1)
+}
+
 /// What the rows share that have an encoder's level in common.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Level {
@@ -76,6 +86,8 @@ pub struct Noise {
     pub shared: f64,
     /// The growth `a` with the displacement (1/m).
     pub growth: f64,
+    /// Whether it may grow.
+    pub may_grow: bool,
     /// What brings each channel to the noise of the first.
     pub scales: Vec<f64>,
     /// Which rows of an encoder share a level, and its variance `tau` over that of one reading.
@@ -104,6 +116,7 @@ impl Noise {
             weights: vec![1.0; readings.rows()],
             shared: if has_shared(readings) { 1.0 } else { 0.0 },
             growth: 0.0,
+            may_grow: readings.differences,
             scales: (0..channels).map(|channel| if channel == 0 { 1.0 } else { lever }).collect(),
             level: (Level::Block, LEVELS[LEVELS.len() - 1]),
             outlying: 0.0,
@@ -125,7 +138,7 @@ impl Noise {
         self.learn_scales(readings, left, &rows);
         let shares: &[f64] = if has_shared(readings) { &SHARED } else { &SHARED[..1] };
         for _ in 0..2 {
-            let parts: &[f64] = if readings.differences { &PROPORTIONAL } else { &PROPORTIONAL[..1] };
+            let parts: &[f64] = if self.may_grow { &PROPORTIONAL } else { &PROPORTIONAL[..1] };
             let tried = shares.iter().flat_map(|share| parts.iter().map(move |part| (*share, *part)));
             let judged = tried.map(|(share, part)| {
                 let price = if part > 0.0 { AGAINST_GROWTH } else { 0.0 }
@@ -302,7 +315,8 @@ impl Noise {
         }
         self.outlying = part;
         self.for_outliers = of_rows().map(|&row| (1.0 - part + part * odds(squares[row])).ln()).sum();
-        let squares: Vec<f64> = of_rows().map(|&row| squares[row]).collect();
+        let all = squares;
+        let squares: Vec<f64> = of_rows().map(|&row| all[row]).collect();
         let (ratio, beyond) = beyond_tails(&squares, axes);
         self.for_beyond = ratio;
         self.beyond_tails = of_rows().zip(beyond).filter(|(_, beyond)| *beyond).map(|(row, _)| *row).collect();
@@ -310,6 +324,18 @@ impl Noise {
         for &row in of_rows() {
             self.weights[row] = 1.0 - outlying[row] + outlying[row] / (WIDER * WIDER);
         }
+        // A row that is no part of the tails may be off by anything: by its own residual it is likeliest. Many of
+        // them are what the noise is like.
+        if self.beyond_tails.len() <= most_apart(of_rows().count()) {
+            for &row in &self.beyond_tails {
+                self.weights[row] = self.weights[row].min(axes / all[row]);
+            }
+        }
+    }
+
+    /// The rows that do not belong to the others: beyond their tails, by odds that leave no doubt.
+    pub fn rows_apart(&self) -> &[usize] {
+        if self.for_outliers < FOR_OUTLIERS || self.for_beyond < FOR_BEYOND { &[] } else { &self.beyond_tails }
     }
 
     /// The reported part of some rows, a column an axis.
@@ -332,6 +358,11 @@ impl Noise {
         self.covariance(readings, rows, 0.0, (self.shared, self.growth))
     }
 
+    /// The variance of the middle one of all rows over `s^2`, as weighed.
+    pub fn of_middle_row(&self) -> f64 {
+        median((0..self.weights.len()).map(|row| self.of_row(row)).collect())
+    }
+
     /// The variance of a row's own reading over `s^2`, as weighed.
     pub fn of_row(&self, row: usize) -> f64 {
         self.own(row, self.growth) / self.weights[row]
@@ -343,9 +374,12 @@ impl Noise {
 const TAILS: [f64; 6] = [2.0, 3.0, 4.0, 6.0, 12.0, 1e3];
 const TAIL_SIZES: [f64; 4] = [0.6, 0.75, 0.9, 1.05];
 
-/// The parts of the rows that may be beyond the tails, and by which factors these are wider than the bulk.
+/// The parts of the rows that may be beyond the tails, and by which factors these are wider than the bulk: one
+/// for all, or each row one of these and of those that follow, [`MORE`] times the last, up to the farthest row.
 const PARTS_BEYOND: [f64; 3] = [0.003, 0.02, 0.08];
 const WIDER_BEYOND: [f64; 3] = [WIDER, 60.0, 300.0];
+/// See [`PARTS_BEYOND`].
+const MORE: f64 = 5.0;
 
 /// Which of some lengths squared, over the variance of the bulk, are beyond the tails of the others, and
 /// the log-likelihood ratio for that: Student's distribution (Lange, Little and Taylor, JASA 84, 1989)
@@ -360,19 +394,19 @@ fn beyond_tails(squares: &[f64], axes: f64) -> (f64, Vec<bool>) {
     let wide = |square: f64, wider: f64| {
         -axes * (0.5 * core::f64::consts::TAU.ln() + wider.ln()) - 0.5 * square / (wider * wider)
     };
+    let widths = widths_beyond(squares);
+    let any = |square: f64| log_sum(widths.iter().map(|&wider| wide(square, wider))) - (widths.len() as f64).ln();
+    let mut wides: Vec<Vec<f64>> = vec![squares.iter().map(|&square| any(square)).collect()];
+    wides.extend(WIDER_BEYOND.map(|wider| squares.iter().map(|&square| wide(square, wider)).collect()));
     let (mut without, mut best) = (f64::NEG_INFINITY, (f64::NEG_INFINITY, vec![false; squares.len()]));
     for freedom in TAILS {
         for size in TAIL_SIZES {
             let tails: Vec<f64> = squares.iter().map(|&square| tail(square, freedom, size)).collect();
             without = without.max(tails.iter().sum());
-            for wider in WIDER_BEYOND {
+            for wide in &wides {
                 for part in PARTS_BEYOND {
-                    let pairs = || {
-                        squares
-                            .iter()
-                            .zip(&tails)
-                            .map(|(&square, tail)| (wide(square, wider) + part.ln(), tail + (-part).ln_1p()))
-                    };
+                    let pairs =
+                        || wide.iter().zip(&tails).map(|(wide, tail)| (wide + part.ln(), tail + (-part).ln_1p()));
                     let sum: f64 = pairs().map(|(a, b)| a.max(b) + (-(a - b).abs()).exp().ln_1p()).sum();
                     if sum > best.0 {
                         best = (sum, pairs().map(|(far, near)| far > near).collect());
@@ -382,6 +416,24 @@ fn beyond_tails(squares: &[f64], axes: f64) -> (f64, Vec<bool>) {
         }
     }
     (best.0 - without, best.1)
+}
+
+/// By which factors rows may be wider than the bulk of some lengths squared.
+fn widths_beyond(squares: &[f64]) -> Vec<f64> {
+    let farthest = squares.iter().copied().fold(0.0, f64::max).sqrt();
+    let mut widths = WIDER_BEYOND.to_vec();
+    let mut next = WIDER_BEYOND[2] * MORE;
+    while next < farthest * MORE && next.is_finite() {
+        widths.push(next);
+        next *= MORE;
+    }
+    widths
+}
+
+/// The logarithm of the sum of numbers that are given by theirs.
+fn log_sum(logs: impl Iterator<Item = f64> + Clone) -> f64 {
+    let most = logs.clone().fold(f64::NEG_INFINITY, f64::max);
+    most + logs.map(|one| (one - most).exp()).sum::<f64>().ln()
 }
 
 /// The rows of the blocks that are fitted to, a list each.
@@ -449,6 +501,9 @@ mod tests {
             assert!(gain > 5.0, "{gain}");
             let rows: Vec<usize> = (0..far.len()).filter(|&row| which[row]).collect();
             assert!(rows.ends_with(&[200, 201, 202]) && rows.len() < 6, "{rows:?}");
+            // However far, and however differently.
+            let (gain, which) = beyond_tails(&[&far[..200], &[1e12, 1e7]].concat(), 3.0);
+            assert!(gain > 5.0 && which[200] && which[201], "{gain}");
         }
     }
 }

@@ -78,7 +78,7 @@ const LIKELY_NOISE: f64 = 2e-5;
 const SAY_SO: f64 = 6.0;
 /// No instrument reads more finely (m, rad). Of displacements whose noise is not known, one reading says
 /// so: it keeps readings without any noise from having none, and has no part in others.
-const FINEST: f64 = 1e-8;
+pub const FINEST: f64 = 1e-8;
 
 /// Rotations and encoders are at first as noisy as if read at this lever (m).
 const LEVER: f64 = 0.2;
@@ -137,6 +137,11 @@ impl<'c> Engine<'c> {
     #[must_use]
     pub fn fitting(&self, fitted: Fitted) -> Self {
         Self { fitted, ..self.clone() }
+    }
+
+    /// As how many readings what is known of the noise before counts; not what only keeps it from being none.
+    pub fn readings_before(&self) -> f64 {
+        if self.prior.size > FINEST { self.prior.weight } else { 0.0 }
     }
 
     /// How many blocks are fitted to.

@@ -39,6 +39,10 @@ const FINER: [f64; 6] = [1.35, 1.16, 1.06, 1.025, 1.01, 1.005];
 /// Rows about a moment that was found which are tried as well.
 const NEAR: usize = 12;
 
+/// How often noise and fit follow from each other at most, and the part of a row's weight that is no change of it.
+const SETTLING: usize = 12;
+const SETTLED: f64 = 0.05;
+
 /// So many sets are compared at their own optimum, those that are at least so likely.
 const OWN: usize = 10;
 const UNLIKELY: f64 = 2e-3;
@@ -129,6 +133,24 @@ impl Engine<'_> {
         let readings = self.observation.readings();
         let kappa = discrepancies(readings)[kappa];
         self.noise.learn(readings, &solved.left, kappa, &self.training);
+    }
+
+    /// What is always in by itself at its optimum under the noise that it leaves; none of the compliances negative.
+    /// The noise follows from the fit, and the fit from the noise, until rows weigh as before.
+    pub fn settle(&mut self, layout: &Layout) -> Option<Solved> {
+        let mut kappa = self.first_kappa();
+        let mut pass = 0;
+        loop {
+            let solved = self.fitting(Fitted::Written).solve_bounded(layout, &[], (&self.point, kappa), 2 * STEPS)?;
+            let (before, last) = (self.noise.weights.clone(), kappa);
+            self.adopt(&solved);
+            kappa = solved.kappa;
+            pass += 1;
+            let moved = before.iter().zip(&self.noise.weights).map(|(a, b)| (a / b).ln().abs()).fold(0.0, f64::max);
+            if pass == SETTLING || (moved < SETTLED && kappa == last) {
+                return Some(solved);
+            }
+        }
     }
 
     /// Offers shapes near those of a set.

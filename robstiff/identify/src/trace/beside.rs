@@ -1,13 +1,12 @@
 //! What is named beside the classes: what is in every set, and stands out all the same.
 
 use super::NamedEffect;
-use super::case::Case;
 use super::found::Found as Effect;
 use crate::effects::{Number, Place, kind_of};
+use crate::fit::case::Case;
 use crate::judge::thresholds::{OUTLYING_ROWS, STANDS_OUT};
 use crate::probability::chi_square_tail;
 use crate::select::always::REFLECTOR;
-use crate::select::classes::ODDS;
 use crate::select::engine::Engine;
 use crate::select::passes::Found;
 use crate::select::unseen::Unseen;
@@ -43,13 +42,9 @@ pub fn reflector(found: &Found, unseen: &Unseen<'_>) -> Option<NamedEffect> {
 /// Rows that do not belong to the others, where they are few and far off: not the tail of the others.
 pub fn outliers(engine: &Engine<'_>, (found, unseen): (&Found, &Unseen<'_>), case: &Case<'_>) -> Option<NamedEffect> {
     let readings = case.observation.readings();
-    let rows = &engine.noise.beyond_tails;
+    let rows = engine.noise.rows_apart();
     let fitted = case.rows(true).len();
-    if rows.is_empty()
-        || engine.noise.for_outliers < FOR_OUTLIERS
-        || engine.noise.for_beyond < ODDS.ln()
-        || (rows.len() as f64) < OUTLYING_ROWS * fitted as f64
-    {
+    if rows.is_empty() || (rows.len() as f64) < OUTLYING_ROWS * fitted as f64 {
         return None;
     }
     let name = "outliers@rig".to_owned();
@@ -63,6 +58,3 @@ pub fn outliers(engine: &Engine<'_>, (found, unseen): (&Found, &Unseen<'_>), cas
         partial: false,
     })
 }
-
-/// The log-likelihood ratio from which on rows are reported as outlying: odds of three thousand.
-const FOR_OUTLIERS: f64 = 8.0;

@@ -4,9 +4,9 @@
 //! it has a word for, named or not; what the rig is off by is corrected for. What no description takes is
 //! not in the fit, so that the numbers written are those that predict without it.
 
-use super::case::Case;
 use super::errors::Misfit;
 use crate::effects::{Side, What};
+use crate::fit::case::Case;
 use crate::judge::thresholds::LOSS;
 use crate::model::Term;
 use crate::select::engine::{Engine, Fitted};

@@ -2,7 +2,7 @@
 
 use nalgebra::DVector;
 
-use super::case::Case;
+use crate::fit::case::Case;
 
 /// How far off a model is (m; of clamped axes, rad).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -3,7 +3,7 @@
 use nalgebra::DVector;
 use robstiff::JointKind;
 
-use super::case::Case;
+use crate::fit::case::Case;
 
 /// A dependence with a larger probability by chance is none, all quantities counted.
 const LEVEL: f64 = 0.01;

@@ -1,7 +1,7 @@
 //! Tracing: which effects a campaign shows that a description lacks.
 //!
 //! The way of the data:
-//! 1. a case (`trace/case.rs`) is made of the campaign: what it reads, and what it can show;
+//! 1. a case (`fit/case.rs`) is made of the campaign: what it reads, and what it can show;
 //! 2. the search (`select`) weighs sets of effects by their evidence;
 //! 3. it is repeated (`select/folds.rs`) without some poses, which gives the error on unseen poses;
 //! 4. each class of effects is judged (`judge`): named, or suspected;
@@ -10,14 +10,11 @@
 mod accounted;
 pub(crate) mod basis;
 mod beside;
-pub(crate) mod case;
 mod corrected;
 mod errors;
-mod estimate;
 mod features;
 mod forms;
 mod found;
-mod noise;
 mod report;
 #[cfg(test)]
 mod tests;
@@ -25,15 +22,16 @@ mod written;
 
 use robstiff_robots::Description;
 
+pub use crate::fit::estimate::{Estimate, NOTEWORTHY_DEVIATION, Visibility, estimates, with_values};
+pub use crate::fit::noise::NoiseSource;
 pub use accounted::account_for;
 pub use errors::{Misfit, PoseError, RowResidual};
-pub use estimate::{Estimate, NOTEWORTHY_DEVIATION, Visibility, estimates, with_values};
 pub use found::Found;
-pub use noise::NoiseSource;
 pub use written::is_offered_as_change;
 
 use crate::campaign::Campaign;
 pub use crate::effects::{Number as EffectParameter, Place};
+use crate::fit::case::Case;
 use crate::identify::Error;
 pub use crate::judge::thresholds::SUSPECTED;
 use crate::judge::thresholds::{DISTINCT, FEWEST_POSES, FOLDS};
@@ -43,7 +41,6 @@ use crate::select::Engine;
 use crate::select::always::{Declared, Own};
 use crate::select::folds::nested;
 use basis::Basis;
-use case::Case;
 
 /// How to trace.
 #[derive(Clone, Copy, Debug, PartialEq)]

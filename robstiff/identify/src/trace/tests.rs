@@ -8,10 +8,10 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use robstiff_robots::{Description, catalogue};
 
-use super::case::Case;
 use super::{NoiseSource, Options, Trace, Verdict, trace};
 use crate::campaign::made::campaign;
 use crate::campaign::{Campaign, ClampedRow, Data, Noise};
+use crate::fit::case::Case;
 use crate::model::Term;
 use crate::model::arm::BETA;
 use crate::predict::predict;

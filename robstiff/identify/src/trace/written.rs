@@ -6,9 +6,9 @@ use robstiff_robots::effect::Place;
 use robstiff_robots::effect::physics::{Parameter, Range};
 use robstiff_robots::{Description, Effect};
 
-use super::estimate::{Estimate, with_values};
 use super::found::Found;
 use crate::campaign::Campaign;
+use crate::fit::estimate::{Estimate, with_values};
 use crate::identify::Error;
 use crate::identify::readable::is_readable;
 use crate::select::always::{Declared, Own};

@@ -2,35 +2,29 @@
 //! (CIRP Annals 56/1, 2007): one gear is loaded at a time, those before it are
 //! clamped, and the compliance is the slope of deflection over torque.
 
-pub mod regression;
-pub mod rounding;
+mod rounding;
 #[cfg(test)]
 mod tests;
-pub mod wild;
 
-use std::format;
-use std::string::String;
-use std::vec::Vec;
-
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DMatrix;
 use robstiff_robots::Description;
 use robstiff_robots::effect::physics::PLAYS;
 
-use self::regression::torques;
-use self::rounding::of_rounding;
-use super::baseline::{Visibility, declared, with_values};
+use self::rounding::{loaded, of_rounding};
+use super::fitted::estimate;
 use super::readable::is_readable;
-use super::uncertainty::{WITHIN, student};
-use super::whitening::mean_share;
-use super::{Error, Estimate, Identification, element_name, unit_of};
-use crate::campaign::{Campaign, ClampedRow};
+use super::{Error, Estimate, Identification, Visibility};
+use crate::campaign::{Campaign, ClampedRow, Data};
+use crate::fit::case::Case;
+use crate::fit::estimate::{name, with_value};
+use crate::fit::own::Alone;
+use crate::model::described::{Declared, declared};
+use robstiff::Effect;
 use robstiff::elements::{Torque, plays, turn};
-use robstiff::{Effect, JointKind};
 
-/// Identifies the compliances of the axes that were loaded, beside the laws of
-/// joints that the description declares, from the rows that belong to the others.
-/// Where a joint is compound, the measurement sees the sum of its parts, which keep
-/// their proportion.
+/// Identifies the compliances of the axes that were loaded, beside the laws of joints that the description
+/// declares: each axis by itself, with the noise of its own rows. Where a joint is compound, the measurement
+/// sees the sum of its parts, which keep their proportion.
 ///
 /// # Errors
 /// An axis whose deflection goes against its torque; rows that load no axis, or one only once;
@@ -41,72 +35,75 @@ pub fn identify(campaign: &Campaign, rows: &[ClampedRow]) -> Result<Identificati
             "every deflection is zero: nothing was read of how the axes give way",
         )));
     }
-    let less = without_laws(&campaign.robot, rows);
-    let mut left_out: Vec<usize> = [JointKind::Revolute, JointKind::Prismatic]
-        .iter()
-        .flat_map(|&kind| wild_of(&campaign.robot, &less, kind))
-        .collect();
-    left_out.sort_unstable();
-    let found = slopes(campaign, rows, &left_out)?;
-    enough(rows)?;
-    if is_readable(&found.description) { Ok(found) } else { Err(Error::NoDescription) }
-}
-
-/// The same of all rows but those `left_out`, by index.
-///
-/// # Errors
-/// An axis whose deflection goes against its torque; rows that load no axis.
-pub fn slopes(campaign: &Campaign, rows: &[ClampedRow], left_out: &[usize]) -> Result<Identification, Error> {
-    let own = declared(&campaign.robot);
-    let less = without_laws(&campaign.robot, rows);
-    let kept: Vec<&ClampedRow> =
-        less.iter().enumerate().filter(|(row, _)| !left_out.contains(row)).map(|(_, row)| row).collect();
-    let rounding = of_rounding(rows);
-    let mut values: Vec<f64> = own.iter().map(|number| number.value).collect();
-    let mut estimates = Vec::new();
-    for (i, number) in own.iter().enumerate() {
-        let here = |row: &&ClampedRow| number.effect.is_none() && row.axis == i + 1;
-        let of_axis: Vec<&ClampedRow> = kept.iter().copied().filter(here).collect();
-        let rounding = rounding.get(i).copied().unwrap_or(0.0);
-        let slope = slope(&of_axis, rounding);
-        let read: Vec<&ClampedRow> = rows.iter().filter(here).collect();
-        if goes_against(&read, rounding) {
-            return Err(Error::AgainstTheLoads(format!(
-                "axis {} deflects against its torque (rows from line {}): check the signs",
-                i + 1,
-                read[0].line
-            )));
-        }
-        let clipped = slope.is_some_and(|(value, _)| value < 0.0);
-        if let Some((value, _)) = slope {
-            values[i] = value.max(0.0);
-        }
-        estimates.push(Estimate {
-            name: element_name(&campaign.robot, number),
-            declared: number.value,
-            value: values[i],
-            std: slope.filter(|_| !clipped).and_then(|(_, std)| std),
-            unit: unit_of(&campaign.robot, number.column),
-            visibility: if slope.is_some() { Visibility::Seen } else { Visibility::Unseen },
-            at_bound: clipped && number.value > 0.0,
-            confounded_with: Vec::new(),
-        });
-    }
-    if estimates.iter().all(|estimate| estimate.visibility != Visibility::Seen) {
+    let loaded = loaded(rows);
+    if loaded.is_empty() {
         return Err(Error::NotShown(String::from("no row loads its axis: every torque is zero")));
     }
-    Ok(Identification {
-        left_out: left_out.iter().map(|&row| rows[row].line).collect(),
-        description: with_values(&campaign.robot, &values),
-        correlation: DMatrix::identity(estimates.len(), estimates.len()),
-        estimates,
+    let robot = &campaign.robot;
+    let own = declared(robot);
+    let held = |number: &Declared| Estimate {
+        name: name(robot, number),
+        declared: number.parameter.mean,
+        value: number.parameter.mean,
+        std: None,
+        unit: number.parameter.unit,
+        visibility: Visibility::Unseen,
+        at_bound: false,
+        confounded_with: Vec::new(),
+    };
+    let mut found = Identification {
+        description: robot.clone(),
+        estimates: own.iter().map(held).collect(),
+        correlation: DMatrix::identity(own.len(), own.len()),
         rows: rows.len(),
         poses: 0,
         noise: None,
         covariance: None,
+        left_out: Vec::new(),
         rms_declared: None,
         rms: None,
-    })
+    };
+    let rounding = of_rounding(rows);
+    for axis in loaded {
+        let of_axis: Vec<ClampedRow> = rows.iter().filter(|row| row.axis == axis).copied().collect();
+        if goes_against(&of_axis, rounding[axis - 1]) {
+            return Err(Error::AgainstTheLoads(format!(
+                "axis {axis} deflects against its torque (rows from line {}): check the signs",
+                of_axis[0].line
+            )));
+        }
+        add(&mut found, &own, &Campaign { data: Data::Clamped(of_axis), ..campaign.clone() }, rounding[axis - 1])?;
+    }
+    enough(rows)?;
+    found.left_out.sort_unstable();
+    if is_readable(&found.description) { Ok(found) } else { Err(Error::NoDescription) }
+}
+
+/// Adds what the rows of one axis say; `least` is the variance of their rounding.
+fn add(found: &mut Identification, own: &[Declared], campaign: &Campaign, least: f64) -> Result<(), Error> {
+    let case = Case::new(campaign, &campaign.robot);
+    let alone = Alone::fitted(&case, &campaign.robot, least).ok_or(Error::NotFinite)?;
+    let place = |number: &Declared| own.iter().position(|of| of.what == number.what);
+    let places: Vec<Option<usize>> = alone.own.iter().map(place).collect();
+    let correlation = alone.correlation();
+    for (k, at) in places.iter().enumerate().filter_map(|(k, at)| Some((k, (*at)?))) {
+        let mut estimate = estimate(&campaign.robot, &alone, k);
+        if let Visibility::Confounded(others) = &mut estimate.visibility {
+            *others = others.iter().filter_map(|&other| places[other]).collect();
+        }
+        found.estimates[at] = estimate;
+        for (other, place) in places.iter().enumerate() {
+            if let Some(place) = *place {
+                found.correlation[(at, place)] = correlation[(k, other)];
+            }
+        }
+    }
+    for k in alone.seen() {
+        found.description = with_value(found.description.clone(), &alone.own[k], alone.value(k));
+    }
+    let lines = &case.observation.readings().lines;
+    found.left_out.extend(alone.outliers().iter().map(|&row| lines[row]));
+    Ok(())
 }
 
 /// Refuses an axis that is read only once: its slope would have no uncertainty.
@@ -119,19 +116,10 @@ fn enough(rows: &[ClampedRow]) -> Result<(), Error> {
     )))
 }
 
-/// The outlying rows of the axes of one kind, by index: radians and metres have no noise in common.
-fn wild_of(robot: &Description, rows: &[ClampedRow], kind: JointKind) -> Vec<usize> {
-    let at: Vec<usize> = (0..rows.len()).filter(|&row| robot.joints[rows[row].axis - 1].kind == kind).collect();
-    let own: Vec<ClampedRow> = at.iter().map(|&row| rows[row]).collect();
-    // What is left may be a curve of a gear.
-    let wild = wild::wild_rows(&own, &torques(&own), false, &wild::Room::new(rows));
-    wild.map_or_else(Vec::new, |(wild, _)| wild.into_iter().map(|row| at[row]).collect())
-}
-
 /// Whether an axis deflects against its torque: a sign is wrong in most of its rows, an outlying reading
 /// in one. Of an axis that does not move, readings may be a step off on either side; `rounding` is
 /// their variance by that.
-fn goes_against(rows: &[&ClampedRow], rounding: f64) -> bool {
+fn goes_against(rows: &[ClampedRow], rounding: f64) -> bool {
     let against = rows.iter().filter(|row| row.torque * row.deflection < 0.0).count();
     let a_step = (12.0 * rounding).sqrt() * (1.0 + 1e-9);
     2 * against > rows.len() && rows.iter().any(|row| row.deflection.abs() > a_step)
@@ -158,30 +146,4 @@ pub fn without_laws(robot: &Description, rows: &[ClampedRow]) -> Vec<ClampedRow>
         less
     };
     rows.iter().map(less).collect()
-}
-
-/// The slope through the origin of rows that share one unloaded reading, and its
-/// standard deviation from their scatter (none from a single row), which is taken for no
-/// less than some variance; `None` where nothing was loaded. The standard deviation is told
-/// as [`uncertainty`](super::uncertainty) tells it.
-fn slope(rows: &[&ClampedRow], least: f64) -> Option<(f64, Option<f64>)> {
-    let share = mean_share(rows.len(), 1.0) / rows.len().max(1) as f64;
-    let whitened = |of: fn(&ClampedRow) -> f64| {
-        let values = DVector::from_iterator(rows.len(), rows.iter().map(|row| of(row)));
-        let sum = values.sum();
-        values.add_scalar(-share * sum)
-    };
-    let (torques, deflections) = (whitened(|row| row.torque), whitened(|row| row.deflection));
-    let squares = torques.norm_squared();
-    if squares == 0.0 {
-        return None;
-    }
-    let slope = torques.dot(&deflections) / squares;
-    let freedom = rows.len() as f64 - 1.0;
-    let std = (freedom > 0.0).then(|| {
-        let left = (deflections - slope * torques).norm_squared();
-        let scatter = left / freedom * (student(freedom) / WITHIN).powi(2);
-        (scatter.max(least) / squares).sqrt()
-    });
-    Some((slope, std))
 }

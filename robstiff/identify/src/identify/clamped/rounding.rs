@@ -7,7 +7,8 @@
 
 use std::vec::Vec;
 
-use super::regression::{rows_of, torques};
+use nalgebra::DMatrix;
+
 use crate::campaign::{ClampedRow, rounded};
 
 /// Readings in proportion to this part of a step were not rounded to it, but are alike
@@ -56,4 +57,28 @@ fn alike(rows: &[ClampedRow]) -> f64 {
     torques.sort_by(f64::total_cmp);
     torques.dedup();
     loaded as f64 / torques.len().max(1) as f64
+}
+
+/// The axes (from 1) that are loaded, in order.
+pub fn loaded(rows: &[ClampedRow]) -> Vec<usize> {
+    axes_of(rows.iter().filter(|row| row.torque != 0.0))
+}
+
+/// The axes (from 1) of some rows, in order.
+fn axes_of<'a>(rows: impl Iterator<Item = &'a ClampedRow>) -> Vec<usize> {
+    let mut axes: Vec<usize> = rows.map(|row| row.axis).collect();
+    axes.sort_unstable();
+    axes.dedup();
+    axes
+}
+
+/// The rows of an axis, by index.
+pub fn rows_of(rows: &[ClampedRow], axis: usize) -> Vec<usize> {
+    (0..rows.len()).filter(|&row| rows[row].axis == axis).collect()
+}
+
+/// The columns of the axes' compliances: the torque of each [`loaded`] axis (Nm).
+pub fn torques(rows: &[ClampedRow]) -> DMatrix<f64> {
+    let axes = loaded(rows);
+    DMatrix::from_fn(rows.len(), axes.len(), |row, k| if rows[row].axis == axes[k] { rows[row].torque } else { 0.0 })
 }

@@ -9,7 +9,8 @@ use rand_chacha::ChaCha8Rng;
 use super::*;
 use crate::campaign::Data;
 use crate::campaign::made::campaign;
-use crate::probability::normal;
+use crate::probability::{WITHIN, normal};
+use robstiff::JointKind;
 use robstiff_robots::samples::five_axis;
 
 fn row(torque: f64, deflection: f64) -> ClampedRow {
@@ -18,41 +19,38 @@ fn row(torque: f64, deflection: f64) -> ClampedRow {
 
 #[test]
 fn the_slope_goes_through_the_origin() {
-    let rows = [row(100.0, 3e-5), row(-200.0, -6e-5), row(300.0, 9e-5)];
-    let (value, std) = slope(&rows.each_ref(), 0.0).expect("loaded");
-    assert!((value - 3e-7).abs() < 1e-18 && std.expect("three rows") < 1e-18);
-    assert_eq!(slope(&[&row(100.0, 1e-5)], 0.0).expect("loaded").1, None);
-    assert_eq!(slope(&[&row(0.0, 1e-5)], 0.0), None);
-    assert_eq!(slope(&[], 0.0), None);
+    let found = identified(vec![row(100.0, 3e-5), row(-200.0, -6e-5), row(300.0, 9e-5)]);
+    let Estimate { value, std, .. } = found.estimates[0];
+    // As sure as the finest instrument reads.
+    assert!((value - 3e-7).abs() < 1e-15 && std.expect("three rows") < 1e-9, "{value} {std:?}");
 }
 
 #[test]
 fn scatter_makes_the_standard_deviation() {
-    // 1, -2, 1 about slope 2 at torques 1, 2, 3: orthogonal to the torques, and
+    // 1, -2, 1 about slope 20 at torques 1, 2, 3: orthogonal to the torques, and
     // without a mean, so of it the unloaded reading has nothing. Of the torques'
     // 14 it takes 6^2 / (1 + 3). The quantile is that of two degrees of freedom.
-    let rows = [row(1.0, 3.0), row(2.0, 2.0), row(3.0, 7.0)];
-    let (value, std) = slope(&rows.each_ref(), 0.0).expect("loaded");
-    assert!((value - 2.0).abs() < 1e-12);
-    let expected = (6.0_f64 / 2.0 / (14.0 - 9.0)).sqrt() * 4.302_652_73 / 1.959_963_98;
-    assert!((std.expect("three rows") / expected - 1.0).abs() < 1e-8);
+    let rows = [(1.0, 21.0), (2.0, 38.0), (3.0, 61.0)].map(|(torque, read)| row(100.0 * torque, 1.3e-6 * read));
+    let Estimate { value, std, .. } = identified(rows.to_vec()).estimates[0];
+    assert!((value / 2.6e-7 - 1.0).abs() < 1e-6, "{value}");
+    let expected = 1.3e-8 * (6.0_f64 / 2.0 / (14.0 - 9.0)).sqrt() * 4.302_652_73 / 1.959_963_98;
+    assert!((std.expect("three rows") / expected - 1.0).abs() < 1e-3, "{std:?} {expected}");
 }
 
 /// Whatever the number of rows, 1.96 standard deviations are the 95 % interval.
 #[test]
 fn intervals_hold_what_they_say() {
     let mut random = ChaCha8Rng::seed_from_u64(31);
-    let runs = 2000;
+    let runs = 400;
     for torques in [&[400.0, 800.0][..], &[200.0, 400.0, 600.0], &[-800.0, -400.0, 200.0, 400.0, 600.0, 800.0]] {
         let within = (0..runs).filter(|_| {
             let unloaded = normal(&mut random);
-            let mut read = |torque: &f64| row(*torque, 0.03 * torque + normal(&mut random) - unloaded);
-            let rows: Vec<ClampedRow> = torques.iter().map(&mut read).collect();
-            let (value, std) = slope(&rows.iter().collect::<Vec<_>>(), 0.0).expect("loaded");
-            (value - 0.03).abs() <= WITHIN * std.expect("two rows or more")
+            let mut read = |torque: &f64| row(*torque, 3e-7 * torque + 3e-6 * (normal(&mut random) - unloaded));
+            let Estimate { value, std, .. } = identified(torques.iter().map(&mut read).collect()).estimates[0];
+            (value - 3e-7).abs() <= WITHIN * std.expect("two rows or more")
         });
         let share = within.count() as f64 / f64::from(runs);
-        assert!((share - 0.95).abs() < 0.02, "{share} at {torques:?}");
+        assert!((share - 0.95).abs() < 0.04, "{share} at {torques:?}");
     }
 }
 
@@ -120,11 +118,15 @@ fn a_rail_among_gears_has_its_own_wild_readings() {
 
 /// What the data do not follow is at its bound, and no wrong sign.
 #[test]
-fn an_axis_that_gives_way_less_than_declared_is_at_its_bound() {
+fn an_axis_that_gives_way_less_the_more_it_is_loaded_is_at_its_bound() {
     let mut robot = five_axis();
-    robot.effects.push(Effect::LostMotion { joint: 1, gap: 4e-4, knee: 200.0 });
-    let rows = [row(100.0, 1e-6), row(200.0, 2e-6), row(300.0, 3e-6)];
-    let found = identify(&campaign(robot, Data::Clamped(rows.to_vec())), &rows).expect("axis 1 is loaded");
+    robot.effects.push(Effect::LostMotion { joint: 1, gap: 4e-4, knee: 50.0 });
+    let read = |k: i32| {
+        let torque = 100.0 * f64::from(k);
+        row(torque, 2e-4 * torque / torque.hypot(50.0) - 2e-8 * torque)
+    };
+    let rows: Vec<ClampedRow> = (1..=9).map(read).collect();
+    let found = identify(&campaign(robot, Data::Clamped(rows.clone())), &rows).expect("axis 1 is loaded");
     let Estimate { value, std, at_bound, .. } = found.estimates[0];
     assert_eq!((value, std, at_bound), (0.0, None, true));
 }
@@ -141,7 +143,7 @@ fn measured(count: usize, mut more: impl FnMut(usize, f64) -> f64) -> Vec<Clampe
 }
 
 fn identified(rows: Vec<ClampedRow>) -> Identification {
-    identify(&campaign(five_axis(), Data::Clamped(rows.clone())), &rows).expect("three axes are loaded")
+    identify(&campaign(five_axis(), Data::Clamped(rows.clone())), &rows).expect("axes are loaded")
 }
 
 #[test]
@@ -211,7 +213,7 @@ fn no_slope_is_surer_than_its_gauge_reads() {
             }
             let found = identified(rows);
             for (estimate, truth) in found.estimates.iter().zip(compliances) {
-                let std = estimate.std.expect("it is loaded");
+                let std = estimate.std.unwrap_or_else(|| panic!("{estimate:?} {truth} {seed} {step}"));
                 assert!(std > 1e-4 * truth, "{estimate:?}");
                 beyond += usize::from((estimate.value - truth).abs() > WITHIN * std);
                 count += 1;

@@ -56,22 +56,8 @@ impl Outlier {
 /// common.
 pub const STRICT: f64 = 1e-3;
 
-/// What must be explained over the robust variance, where structure may be left: beyond
-/// twelve standard deviations.
-pub const STANDS_OUT: f64 = 150.0;
-
 /// More than this share of the rows is no matter of single rows.
 pub const FEW: f64 = 0.1;
-
-/// The median of chi-square with one degree of freedom.
-const MEDIAN: f64 = 0.4549;
-
-/// The variance that squares have by their median, which outlying ones do not move.
-pub fn by_median(squares: impl Iterator<Item = f64>) -> f64 {
-    let mut squares: Vec<f64> = squares.collect();
-    squares.sort_by(f64::total_cmp);
-    squares.get(squares.len() / 2).copied().unwrap_or(0.0) / MEDIAN
-}
 
 /// A shift that the free response at the pose takes up but for this fraction
 /// cannot be judged.

@@ -1,16 +1,10 @@
 //! What absolute positions say of a description, with nothing missing from it.
 
-use std::rc::Rc;
-use std::vec;
-
 use robstiff_robots::{Description, catalogue};
 
 use super::super::{Error, Visibility, identify as identified};
-use super::model::{Enters, Model};
-use super::*;
 use crate::campaign::Data;
 use crate::campaign::made_positions::Plan;
-use crate::identify::normal::Sign;
 use crate::predict::predict as predicted;
 use robstiff::Effect;
 use robstiff_robots::samples::{five_axis, odd};
@@ -164,30 +158,4 @@ fn a_position_off_by_metres_hides_no_other() {
         let found = identified(&plan.run_with(|i, row| row.position[1] += off(i))).expect("payloads");
         assert_eq!(found.left_out, [33, 82], "{far} m");
     }
-}
-
-/// Columns are what the numbers do: from any start near enough, a fit comes to the
-/// truth.
-#[test]
-fn steps_come_to_the_truth() {
-    let truth = [0.03, -0.05, 0.02];
-    let mut plan = Plan { noise: 0.0, ..Plan::new(six_axis(), 7) };
-    plan.hidden = (2..5).zip(truth).map(|(joint, value)| Effect::JointZeroOffset { joint, value }).collect();
-    let campaign = plan.run();
-    let crate::campaign::Data::Position(data) = &campaign.data else { unreachable!("positions") };
-    let prepared = Prepared::new(&campaign, data).expect("positions");
-    let offset = |joint| {
-        let enters = move |model: &mut Model, value| {
-            model.description.effects.push(Effect::JointZeroOffset { joint, value });
-        };
-        (Enters::Model(Rc::new(enters), 1e-5), Sign::Free)
-    };
-    let regression = prepared.regression((2..5).map(offset));
-    let own = prepared.own.len();
-    let chosen: Vec<usize> = (own..own + 3).collect();
-    let solved = regression.solve(&chosen, &prepared.state(own + 3), &prepared.rows).expect("three offsets");
-    for (k, truth) in truth.into_iter().enumerate() {
-        assert!((solved.fit.coefficients[STANDS + k] - truth).abs() < 1e-10, "{}", solved.fit.coefficients);
-    }
-    assert!(residuals(&regression, &solved.state).amax() < 1e-9);
 }

@@ -6,10 +6,10 @@ use std::string::String;
 
 use robstiff_robots::Description;
 
-use super::model::Model;
 use crate::campaign::Positions;
 use crate::identify::misread::{apart, from_middle};
 use crate::identify::scale::HEADER;
+use crate::observe::position::Position;
 
 /// Pairs of units of length that are taken for each other, and how many of the one the other is.
 /// Those that are nearer to each other are not asked about: with angles in radians taken for
@@ -27,7 +27,7 @@ const CLOSE: f64 = 0.01;
 /// Why nothing can be made of positions that are as many times as far apart as the description
 /// puts them as one unit of length is of another, and what would be right.
 pub fn other_unit(robot: &Description, data: &Positions) -> Option<String> {
-    let described = from_middle(Model::new(robot, data).points(data).into_iter());
+    let described = from_middle(Position::new(robot, data).points(robot).into_iter());
     let read = apart(data);
     if described < CLOSE {
         return None;

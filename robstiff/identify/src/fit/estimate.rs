@@ -95,7 +95,7 @@ pub fn estimates(robot: &Description, own: &[Declared], model: Option<(&Layout, 
 }
 
 /// `joint 3`, or an effect's full name with its number's where it has several.
-fn name(robot: &Description, number: &Declared) -> String {
+pub fn name(robot: &Description, number: &Declared) -> String {
     match number.what {
         Own::Joint(joint) => format!("joint {joint}"),
         Own::Effect(index, _) => {
@@ -110,17 +110,20 @@ fn name(robot: &Description, number: &Declared) -> String {
 
 /// A description with the values of some estimates, those that were seen.
 pub fn with_values(robot: &Description, own: &[Declared], estimates: &[Estimate]) -> Description {
-    let mut changed = robot.clone();
-    for (number, estimate) in own.iter().zip(estimates).filter(|(_, of)| of.visibility == Visibility::Seen) {
-        match number.what {
-            Own::Joint(joint) => set_compliance(&mut changed.joints[joint - 1].compliance, estimate.value),
-            Own::Effect(index, place) => {
-                let effect = &mut changed.effects[index];
-                let mut numbers: Vec<f64> = effect.numbers().to_vec();
-                numbers[place] = estimate.value;
-                if let Some(new) = Effect::of_kind(effect.kind(), effect.place(), &numbers) {
-                    *effect = new;
-                }
+    let seen = own.iter().zip(estimates).filter(|(_, of)| of.visibility == Visibility::Seen);
+    seen.fold(robot.clone(), |changed, (number, estimate)| with_value(changed, number, estimate.value))
+}
+
+/// A description with another value of a number.
+pub fn with_value(mut changed: Description, number: &Declared, value: f64) -> Description {
+    match number.what {
+        Own::Joint(joint) => set_compliance(&mut changed.joints[joint - 1].compliance, value),
+        Own::Effect(index, place) => {
+            let effect = &mut changed.effects[index];
+            let mut numbers: Vec<f64> = effect.numbers().to_vec();
+            numbers[place] = value;
+            if let Some(new) = Effect::of_kind(effect.kind(), effect.place(), &numbers) {
+                *effect = new;
             }
         }
     }
