@@ -32,6 +32,7 @@ pub(crate) mod tables;
 mod tests;
 #[cfg(test)]
 mod turns_tests;
+mod vectors;
 
 use abreast::{Abreast, Pairs, Vector};
 pub(crate) use float::{FEW_TURNS, FUSED, Float};
