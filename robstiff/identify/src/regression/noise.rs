@@ -324,10 +324,11 @@ impl Noise {
         for &row in of_rows() {
             self.weights[row] = 1.0 - outlying[row] + outlying[row] / (WIDER * WIDER);
         }
-        // A row that is no part of the tails may be off by anything: by its own residual it is likeliest. Many of
-        // them are what the noise is like.
-        if self.beyond_tails.len() <= most_apart(of_rows().count()) {
-            for &row in &self.beyond_tails {
+        // A row that does not belong to the others may be off by anything: by its own residual it is likeliest.
+        // Many of them are what the noise is like.
+        let apart = self.rows_apart().to_vec();
+        if apart.len() <= most_apart(of_rows().count()) {
+            for row in apart {
                 self.weights[row] = self.weights[row].min(axes / all[row]);
             }
         }
