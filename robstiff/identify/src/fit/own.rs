@@ -72,6 +72,7 @@ impl<'e> Alone<'e> {
         let own = engine.declared();
         // An axis has few rows, and those without a load may read exactly zero: by them noise would be all growth.
         engine.noise.may_grow &= engine.scene.what != What::Clamped;
+        engine.noise.spares_others = true;
         engine.fit_alone()?;
         let layout = Layout { candidates: Vec::new(), forms: Vec::new(), ..engine.layout() };
         let likely = likely(&engine, &layout, own.len());

@@ -88,6 +88,9 @@ pub struct Noise {
     pub growth: f64,
     /// Whether it may grow.
     pub may_grow: bool,
+    /// Whether a row that does not belong to the others weighs by its own residual. Where candidates are searched it
+    /// does not: what is missing looks like such rows.
+    pub spares_others: bool,
     /// What brings each channel to the noise of the first.
     pub scales: Vec<f64>,
     /// Which rows of an encoder share a level, and its variance `tau` over that of one reading.
@@ -117,6 +120,7 @@ impl Noise {
             shared: if has_shared(readings) { 1.0 } else { 0.0 },
             growth: 0.0,
             may_grow: readings.differences,
+            spares_others: false,
             scales: (0..channels).map(|channel| if channel == 0 { 1.0 } else { lever }).collect(),
             level: (Level::Block, LEVELS[LEVELS.len() - 1]),
             outlying: 0.0,
@@ -327,7 +331,7 @@ impl Noise {
         // A row that does not belong to the others may be off by anything: by its own residual it is likeliest.
         // Many of them are what the noise is like.
         let apart = self.rows_apart().to_vec();
-        if apart.len() <= most_apart(of_rows().count()) {
+        if self.spares_others && apart.len() <= most_apart(of_rows().count()) {
             for row in apart {
                 self.weights[row] = self.weights[row].min(axes / all[row]);
             }
