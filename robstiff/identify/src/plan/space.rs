@@ -13,7 +13,7 @@ use std::format;
 use std::string::String;
 use std::vec::Vec;
 
-use nalgebra::{SVector, Vector3};
+use nalgebra::Vector3;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use robstiff_robots::Description;
@@ -23,7 +23,7 @@ use super::regressors::Visit;
 use super::{Options, can_follow};
 use crate::campaign::{Campaign, Data, Displacements, Positions};
 use crate::identify::Error;
-use robstiff::Robot;
+use crate::model::Arm;
 
 /// The bases of the sequence, a joint each.
 const PRIMES: [u32; 8] = [2, 3, 5, 7, 11, 13, 17, 19];
@@ -388,11 +388,7 @@ fn ramp(data: &Displacements) -> Vec<f64> {
 }
 
 fn tool_centre_point(robot: &Description, q: &[f64]) -> Vector3<f64> {
-    robstiff::with_robot!(robot, |robot| position(&robot, q))
-}
-
-fn position<const N: usize>(robot: &impl Robot<N>, q: &[f64]) -> Vector3<f64> {
-    robot.transform(&SVector::<f64, N>::from_column_slice(q)).fixed_view::<3, 1>(0, 3).into_owned()
+    Arm::of(robot).stand(q, &[]).tcp.at
 }
 
 fn height(robot: &Description, point: &Vector3<f64>) -> f64 {

@@ -4,13 +4,12 @@ use std::format;
 use std::string::{String, ToString};
 use std::vec::Vec;
 
-use nalgebra::SVector;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use robstiff_robots::Description;
 
 use super::{Part, Poses, Refused, Scenario};
-use robstiff::Robot;
+use crate::model::Arm;
 
 /// The streams of a seed.
 #[derive(Clone, Copy)]
@@ -54,6 +53,7 @@ pub fn poses(robot: &Description, scenario: &Scenario) -> Result<Vec<Vec<f64>>, 
         Poses::Drawn { count, within, floor, column } => (*count, within, *floor, *column),
     };
     let mut random = stream(scenario, Stream::Poses);
+    let arm = Arm::of(robot);
     let [foot_x, foot_y, foot_z] = robot.base.xyz;
     let is_inside = |[x, y, z]: [f64; 3]| {
         floor.is_none_or(|floor| z - foot_z >= floor)
@@ -62,7 +62,7 @@ pub fn poses(robot: &Description, scenario: &Scenario) -> Result<Vec<Vec<f64>>, 
     let mut pose = || {
         for _ in 0..TRIES {
             let q: Vec<f64> = within.iter().map(|&[low, high]| random.random_range(low..=high)).collect();
-            if is_inside(tool_centre_point(robot, &q)) {
+            if is_inside(arm.stand(&q, &[]).tcp.at.into()) {
                 return Ok(q);
             }
         }
@@ -75,16 +75,6 @@ pub fn poses(robot: &Description, scenario: &Scenario) -> Result<Vec<Vec<f64>>, 
         })
     };
     (0..count).map(|_| pose()).collect()
-}
-
-/// Where the tool centre point is, in the base frame (m).
-fn tool_centre_point(robot: &Description, q: &[f64]) -> [f64; 3] {
-    robstiff::with_robot!(robot, |robot| position(&robot, q))
-}
-
-fn position<const N: usize>(robot: &impl Robot<N>, q: &[f64]) -> [f64; 3] {
-    let transform = robot.transform(&SVector::<f64, N>::from_column_slice(q));
-    transform.fixed_view::<3, 1>(0, 3).into_owned().into()
 }
 
 /// Names of poses or visits.
