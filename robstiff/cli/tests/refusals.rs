@@ -70,9 +70,11 @@ fn a_scenario_is_refused_at_its_place() {
     };
     let said = of(", floor: 90 m", "500 N, 900 N");
     assert!(said.contains("try.yaml:2:26  (poses.floor)") && said.contains("a lower `floor`"), "{said}");
-    // What second order makes of it is beyond what its reader takes.
-    let said = of("", "1e7, 1e8");
-    assert!(said.contains("try.yaml:3:8  (force)") && said.contains("beyond what a campaign may have"), "{said}");
+    let said = of("", "1e12, 1e13");
+    assert!(
+        said.contains("try.yaml:3:17  (force.bounds)") && said.contains("beyond anything that is measured"),
+        "{said}"
+    );
     assert!(!folder.join("out").exists());
 }
 
