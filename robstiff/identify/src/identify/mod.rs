@@ -6,7 +6,7 @@
 //! and `whitening` accounts for it, `problem` holds the regression in blocks of poses, `normal`
 //! solves it, `prepare` finds what the data can see (`not_shown` why nothing), and `displacement`
 //! puts the result together. Of absolute `positions` and `clamped` axes it is the fit of
-//! [`own`](crate::fit::own) that `fitted` puts together.
+//! `fit/own.rs` that `fitted` puts together.
 
 pub(crate) mod baseline;
 pub(crate) mod clamped;

@@ -21,7 +21,7 @@ impl ToolPath {
     /// The joint coordinates of every point, within the limits.
     ///
     /// Where all points leave the turn about the tool's axis free, and the arm has six axes and a closed
-    /// form, the turn is planned along the whole path (see [`plan`](super::plan)): such that all points are
+    /// form, the turn is planned along the whole path (`path/plan.rs`): such that all points are
     /// reached, with the fewest changes of posture, then away from limits and singular places, then with the
     /// least movement of the joints.
     ///
