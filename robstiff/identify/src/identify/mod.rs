@@ -45,7 +45,7 @@ use std::vec::Vec;
 use nalgebra::DMatrix;
 use robstiff_robots::Description;
 
-pub(crate) use crate::campaign::holdout;
+pub use crate::fit::estimate::NOTEWORTHY_DEVIATION;
 pub use baseline::Visibility;
 pub use clamped::without_laws;
 pub use covariance::{Basis, Covariance};
@@ -200,10 +200,6 @@ pub struct Estimate {
 /// What is said of readings by which every joint that they show would be less than
 /// rigid: they are of something else, or of the wrong sign.
 pub const AGAINST_THE_LOADS: &str = "the readings do not follow the loads";
-
-/// Beyond this deviation from the declared value a joint deserves a look: the
-/// seed paper's identified compliances stayed below it against the maker's.
-pub const NOTEWORTHY_DEVIATION: f64 = 0.25;
 
 impl Estimate {
     /// A number with its unit, of a declared value and a sign, that has a value after a

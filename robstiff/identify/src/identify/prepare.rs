@@ -12,7 +12,6 @@ use super::baseline::{Declared, Visibility, declared, visibility, with_values};
 use super::column::Column;
 use super::covariance::contrasts::Level;
 use super::covariance::{Basis, Covariance};
-use super::holdout::training_of;
 use super::normal::{Fit, Sign};
 use super::not_shown::nothing_shows;
 use super::problem::{Equations, Problem, Weights, raw};
@@ -20,6 +19,7 @@ use super::samples::Samples;
 use super::second_order::{beyond_linear, straightened};
 use super::wild::leave_out;
 use super::{Error, NoiseSource, is_at_bound};
+use crate::campaign::holdout::training_of;
 use crate::campaign::{Campaign, Data, Displacements};
 use crate::words::micrometres;
 

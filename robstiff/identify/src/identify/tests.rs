@@ -325,7 +325,7 @@ fn poses_held_out_have_no_part_in_the_fit() {
     let truth = five_axis();
     let mut campaign = campaign(&truth, stiffer(&truth), Frame::Base, [0.0; 3], true);
     campaign.holdout = Some(crate::campaign::Holdout { fraction: 0.25, seed: 1 });
-    let fitted_to = super::holdout::training(30, campaign.holdout);
+    let fitted_to = crate::campaign::holdout::training(30, campaign.holdout);
     let estimates = |off: f64| -> Vec<f64> {
         let mut campaign = campaign.clone();
         if let Data::Displacement(data) = &mut campaign.data {

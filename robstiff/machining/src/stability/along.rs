@@ -88,8 +88,9 @@ pub fn along<const N: usize>(
         let place =
             Place { point: of.point, length: of.length, speed: of.speed, margin: margin(of.speed), mended: None };
         // The nearest first, by their ratio.
-        let tried = (1..=SPEEDS).flat_map(|k| [k, -k]).map(|k| of.speed * 2_f64.powf(f64::from(k) / f64::from(SPEEDS)));
-        let mended = if place.chatters() { { tried }.find(is_mended) } else { None };
+        let mut tried =
+            (1..=SPEEDS).flat_map(|k| [k, -k]).map(|k| of.speed * 2_f64.powf(f64::from(k) / f64::from(SPEEDS)));
+        let mended = if place.chatters() { tried.find(is_mended) } else { None };
         Some(Place { mended, ..place })
     };
     places.iter().map(place).collect()
