@@ -7,7 +7,7 @@ use std::rc::Rc;
 
 use super::own_weight::profile;
 use super::scene::What;
-use super::stiffness_nonlinearity::{curves, law};
+use super::stiffness_nonlinearity::curves;
 use super::{Form, Kind, Offers, Scene, Side};
 use crate::model::{At, Parameter, Size, Term};
 
@@ -38,11 +38,9 @@ fn offer(scene: &Scene<'_>, offers: &mut Offers) {
 
 /// The loads take the joint (from 1) from one flank to the other.
 fn under_loads(scene: &Scene<'_>, joint: usize) -> Vec<Form> {
-    let of = |knee: f64| Effect::LostMotion { joint, gap: 1.0, knee };
     let size = 0.2 * scene.compliance[joint - 1] * scene.torque[joint - 1];
     let number = move |law| Parameter::new("gap", "rad", Size::Of(size), Term::Law(joint, law)).nonnegative();
-    let written = move |gap, knee| vec![Effect::LostMotion { joint, gap, knee }];
-    curves(scene, (&KIND, joint), &KNEES, |knee| law(of(knee)), number, written)
+    curves(scene, (&KIND, joint), &KNEES, number, move |gap, knee| Effect::LostMotion { joint, gap, knee })
 }
 
 /// The weight of the arm rests on one flank of a gear or on the other, and the joint (from 1) stands

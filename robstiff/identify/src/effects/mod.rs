@@ -226,6 +226,20 @@ impl Form {
         self
     }
 
+    /// The same of a law about all that gears carry: a description declares their preload beside it.
+    #[must_use]
+    pub fn preloaded(self) -> Self {
+        let Some(law) = self.written.clone() else { return self };
+        let written = move |values: &[f64]| {
+            let mut effects = law(values);
+            if !effects.is_empty() {
+                effects.push(Effect::GravityPreload { share: 1.0 });
+            }
+            effects
+        };
+        self.with("preload", 1.0, "1").written(written)
+    }
+
     /// The same with a number that is chosen.
     #[must_use]
     pub fn with(mut self, name: &'static str, value: f64, unit: &'static str) -> Self {

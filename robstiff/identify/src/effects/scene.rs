@@ -110,6 +110,13 @@ impl Scene<'_> {
         self.torque[joint - 1] > 0.0
     }
 
+    /// Whether the law of a gear acts on the load alone, or on all that the gear carries: both are possible where the
+    /// description knows masses and declares no preload by them.
+    pub fn preloads(&self) -> &'static [bool] {
+        let may = self.what != What::Clamped && self.weight.is_known() && self.weight.preload == 0.0;
+        if may { &[false, true] } else { &[false] }
+    }
+
     /// The unit of the compliance of a joint (from 1).
     pub fn unit(&self, joint: usize) -> &'static str {
         if self.turns(joint) { "rad/Nm" } else { "m/N" }

@@ -26,6 +26,11 @@ pub fn play(radius: f64) -> Law {
     })
 }
 
+/// A law about all of the weight that a gear carries, where a description declares no preload.
+pub fn under_weight(law: Law) -> Law {
+    Rc::new(move |torques: &Torques<'_>| law(&Torques { preload: torques.weight, ..*torques }))
+}
+
 /// The law of an effect that does not depend on the order of loads and whose number is one.
 pub fn unit_law(effect: Effect) -> Law {
     Rc::new(move |torques: &Torques<'_>| {

@@ -165,9 +165,10 @@ impl Engine<'_> {
                 Place::Part(robstiff_robots::Place::Joint(joint)) => joint,
                 _ => 0,
             };
+            let several = own.shape.iter().any(|number| number.name == "radius2");
             for number in &own.shape {
                 match number.name {
-                    "knee" | "radius1" if own.shape.len() == 1 && joint > 0 => {
+                    "knee" | "radius1" if !several && joint > 0 => {
                         let now = number.value / self.scene.torque[joint - 1];
                         for by in [1.0, step, 1.0 / step, step * step, 1.0 / (step * step)] {
                             shapes.of_laws.push((candidate.kind.name, joint, now * by));

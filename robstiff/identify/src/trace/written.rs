@@ -106,7 +106,8 @@ pub fn is_offered_as_change(effect: &Effect) -> bool {
     matches!(effect, Effect::JointZeroOffset { .. } | Effect::DhError { .. } | Effect::TransmissionError { .. })
 }
 
-/// Adds an effect to a description, as a change where that declares it already.
+/// Adds an effect to a description, as a change where that declares it already. The preload of gears is one, whatever
+/// laws show it.
 fn add(description: &mut Description, effect: Effect) {
     let slides = |joint: usize| {
         description.joints.get(joint - 1).is_some_and(|joint| joint.kind == robstiff::JointKind::Prismatic)
@@ -119,6 +120,9 @@ fn add(description: &mut Description, effect: Effect) {
     };
     let same = |declared: &Effect| is_offered_as_change(declared) && declared.is_same(&effect);
     let place = description.effects.iter().position(|declared| same(declared) && sum(declared, &effect).is_some());
+    if !is_offered_as_change(&effect) && description.effects.contains(&effect) {
+        return;
+    }
     match place.and_then(|at| Some((at, sum(&description.effects[at], &effect)?))) {
         Some((at, whole)) => description.effects[at] = whole,
         None => description.effects.push(effect),
