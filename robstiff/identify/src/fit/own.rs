@@ -13,7 +13,7 @@ use super::case::Case;
 use crate::effects::What;
 use crate::model::{Sign, Size};
 use crate::probability::{WITHIN, student};
-use crate::regression::noise::most_apart;
+use crate::regression::tails::most_apart;
 use crate::select::Layout;
 use crate::select::always::{Declared, Own};
 use crate::select::engine::{Engine, FINEST, Point};
@@ -72,7 +72,7 @@ impl<'e> Alone<'e> {
         let own = engine.declared();
         // An axis has few rows, and those without a load may read exactly zero: by them noise would be all growth.
         engine.noise.may_grow &= engine.scene.what != What::Clamped;
-        engine.noise.spares_others = true;
+        engine.noise.by_anything = true;
         engine.fit_alone()?;
         let layout = Layout { candidates: Vec::new(), forms: Vec::new(), ..engine.layout() };
         let likely = likely(&engine, &layout, own.len());
@@ -222,7 +222,7 @@ impl<'e> Alone<'e> {
 
     /// The rows that do not belong to the others; none where these are many.
     pub fn outliers(&self) -> &[usize] {
-        let rows = self.engine.noise.rows_apart();
+        let rows = self.engine.noise.apart.rows();
         if rows.len() > most_apart(self.engine.observation.readings().rows()) { &[] } else { rows }
     }
 

@@ -40,6 +40,8 @@ pub struct Evidence<'a> {
     pub suspected: &'a [String],
     /// What has no name and looks like this, each as a noun for a sentence.
     pub looks_like: &'a [String],
+    /// The lines of rows that are far off, of which the data do not tell whether they belong to the others.
+    pub far_off: &'a [usize],
     /// The probability that a discrepancy is left.
     pub discrepancy: f64,
     /// What the model leaves over the noise, where that is known independently of the model.
@@ -54,6 +56,8 @@ pub struct OverNoise {
     /// What this may well be by chance.
     pub by_chance: f64,
 }
+
+use crate::words::and;
 
 use super::thresholds::{ABOVE_NOISE, MOST_NAMES, MOST_OUTLYING};
 
@@ -73,6 +77,14 @@ pub fn verdict(of: &Evidence<'_>) -> (Verdict, String) {
         }
         if of.outlying > MOST_OUTLYING {
             return Some("more readings do not belong to the others than single mistakes would make".into());
+        }
+        if let Some(last) = of.far_off.last() {
+            let lines: Vec<String> = of.far_off.iter().map(usize::to_string).collect();
+            let is = match lines.len() {
+                1 => format!("line {last} is"),
+                _ => format!("lines {} are", and(&lines)),
+            };
+            return Some(format!("{is} off by far more than the others: mistakes, or something that only these show"));
         }
         if left {
             return Some("poses deviate by more than the noise of their readings".into());
@@ -103,6 +115,7 @@ mod tests {
         outlying: 0.0,
         suspected: &[],
         looks_like: &[],
+        far_off: &[],
         discrepancy: 0.0,
         over_noise: Some(OverNoise { ratio: 1.0, by_chance: 1.0 }),
     };
@@ -113,6 +126,15 @@ mod tests {
         assert_eq!(verdict(&Evidence { outlying: 0.01, ..NOTHING }).0, Verdict::Explained);
         assert_eq!(verdict(&Evidence { outlying: 0.08, ..NOTHING }).0, Verdict::Partial);
         assert_eq!(verdict(&Evidence { outlying: 0.01, over_noise: None, ..NOTHING }).0, Verdict::Partial);
+    }
+
+    /// What is far off is something, whether the noise is known or not.
+    #[test]
+    fn nothing_is_not_all_where_rows_are_far_off() {
+        let far = |over_noise| verdict(&Evidence { far_off: &[2, 9], over_noise, ..NOTHING });
+        assert_eq!(far(None).0, Verdict::Unexplained);
+        assert_eq!(far(NOTHING.over_noise).0, Verdict::Unexplained);
+        assert!(far(None).1.starts_with("lines 2 and 9 are off by far more"), "{}", far(None).1);
     }
 
     /// Ten repetitions know a noise to no better than half of it.

@@ -2,6 +2,7 @@
 //!
 //! - [`dense`]: factors of small matrices;
 //! - [`noise`]: what a reading is off by, and what of it the rows of a visit and of a pose share;
+//! - [`tails`]: which rows are far off, and how little they weigh;
 //! - [`gram`]: everything that a fit needs to know of the rows, group by group of poses;
 //! - [`evidence`]: how well some columns account for the readings, with all values of their
 //!   numbers weighed by what these are likely to be.
@@ -10,6 +11,7 @@ pub mod dense;
 pub mod evidence;
 pub mod gram;
 pub mod noise;
+pub mod tails;
 
 pub use evidence::{Fit, NoisePrior, Prior, Scales};
 pub use gram::{Gram, Grams};

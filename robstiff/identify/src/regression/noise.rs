@@ -5,9 +5,8 @@
 //! `S = s^2 [diag(v_r / w_r) + rho 1_visit + kappa F_r . F_s / F_0^2]`.
 //!
 //! `s` is the noise of one reading. `rho` is the unloaded reading that the rows of a visit share.
-//! `v_r = 1 + (a |d_r|)^2` grows with the displacement. `w_r` is small where a row is outlying: a
-//! normal distribution contaminated with a wider one (Lange, Little and Taylor, JASA 84, 1989). The
-//! last part is what the model does not account for at a pose, its *discrepancy* (Kennedy and
+//! `v_r = 1 + (a |d_r|)^2` grows with the displacement. `w_r` is small where a row is outlying: see
+//! [`tails`](super::tails). The last part is what the model does not account for at a pose, its *discrepancy* (Kennedy and
 //! O'Hagan, J. R. Statist. Soc. B 63, 2001): a random compliance of each pose, which adds the more,
 //! the larger the load.
 //!
@@ -17,8 +16,8 @@
 //! discrepancy: it sees the gear alone, where a model lacks little.
 
 use nalgebra::{DMatrix, DVector, Vector3};
-use statrs::function::gamma::ln_gamma;
 
+use super::tails::{Apart, median, weigh};
 use crate::observe::Readings;
 
 /// The discrepancies `kappa` that are weighed against each other; none has half the prior.
@@ -49,24 +48,8 @@ const AGAINST_SOME: f64 = 2.0;
 /// Rounds until noise that grows is of its own size.
 const GROWING: usize = 4;
 
-/// By which factor the wider distribution is wider.
-const WIDER: f64 = 12.0;
-
-/// At most such a part of the rows is outlying: more of them are what the noise is like.
-const MOST_OUTLYING: f64 = 0.1;
-
 /// A row with less weight than this is outlying.
 pub const OUTLYING: f64 = 0.3;
-
-/// The log-likelihood ratio from which on rows are reported as outlying: odds of three thousand.
-const FOR_OUTLIERS: f64 = 8.0;
-/// The one from which on they are beyond the tails of the others: odds of twenty.
-const FOR_BEYOND: f64 = 3.0;
-
-/// Of so many rows at most so many do not belong to the others.
-pub fn most_apart(rows: usize) -> usize {
-    ((MOST_OUTLYING * rows as f64) as usize).max(1)
-}
 
 /// What the rows share that have an encoder's level in common.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -88,21 +71,15 @@ pub struct Noise {
     pub growth: f64,
     /// Whether it may grow.
     pub may_grow: bool,
-    /// Whether a row that does not belong to the others weighs by its own residual. Where candidates are searched it
-    /// does not: what is missing looks like such rows.
-    pub spares_others: bool,
+    /// Whether a row may be off by anything, and then has no pull on the others. Where effects of loads are searched it
+    /// may not: what is missing looks like such rows, and is no larger than what was read.
+    pub by_anything: bool,
     /// What brings each channel to the noise of the first.
     pub scales: Vec<f64>,
     /// Which rows of an encoder share a level, and its variance `tau` over that of one reading.
     pub level: (Level, f64),
-    /// The part of the rows that is outlying.
-    pub outlying: f64,
-    /// The log-likelihood ratio of outlying rows against none.
-    pub for_outliers: f64,
-    /// The rows that are beyond the tails of the others.
-    pub beyond_tails: Vec<usize>,
-    /// The log-likelihood ratio for any being so.
-    pub for_beyond: f64,
+    /// The rows that do not belong to the others.
+    pub apart: Apart,
     /// The size of the displacement of each row (m).
     sizes: Vec<f64>,
 }
@@ -120,13 +97,10 @@ impl Noise {
             shared: if has_shared(readings) { 1.0 } else { 0.0 },
             growth: 0.0,
             may_grow: readings.differences,
-            spares_others: false,
+            by_anything: !readings.differences,
             scales: (0..channels).map(|channel| if channel == 0 { 1.0 } else { lever }).collect(),
             level: (Level::Block, LEVELS[LEVELS.len() - 1]),
-            outlying: 0.0,
-            for_outliers: 0.0,
-            beyond_tails: Vec::new(),
-            for_beyond: 0.0,
+            apart: Apart::default(),
             sizes,
         }
     }
@@ -299,48 +273,13 @@ impl Noise {
                 squares[row] = solved.row(k).norm_squared() * own * own / self.own(row, self.growth) / (size * size);
             }
         }
-        let axes = readings.reported as f64;
-        let of_rows = || rows.iter().flatten();
-        // The median of chi-square is its degrees of freedom less some 0.66.
-        let bulk = median(of_rows().map(|&row| squares[row]).collect()) / (axes - 0.66).max(0.34);
-        if bulk > 0.0 {
-            squares.iter_mut().for_each(|square| *square /= bulk);
-        }
-        let odds = |square: f64| WIDER.powf(-axes) * (0.5 * square * (1.0 - 1.0 / (WIDER * WIDER))).min(600.0).exp();
-        let mut part = self.outlying.max(0.01);
-        let mut outlying = vec![0.0; readings.rows()];
-        for _ in 0..20 {
-            for &row in of_rows() {
-                let weighed = part * odds(squares[row]);
-                outlying[row] = weighed / (weighed + 1.0 - part);
-            }
-            let count = of_rows().count().max(1) as f64;
-            part = (of_rows().map(|&row| outlying[row]).sum::<f64>() / count).clamp(1e-4, MOST_OUTLYING);
-        }
-        self.outlying = part;
-        self.for_outliers = of_rows().map(|&row| (1.0 - part + part * odds(squares[row])).ln()).sum();
-        let all = squares;
-        let squares: Vec<f64> = of_rows().map(|&row| all[row]).collect();
-        let (ratio, beyond) = beyond_tails(&squares, axes);
-        self.for_beyond = ratio;
-        self.beyond_tails = of_rows().zip(beyond).filter(|(_, beyond)| *beyond).map(|(row, _)| *row).collect();
-        self.beyond_tails.sort_unstable();
-        for &row in of_rows() {
-            self.weights[row] = 1.0 - outlying[row] + outlying[row] / (WIDER * WIDER);
-        }
-        // A row that does not belong to the others may be off by anything: by its own residual it is likeliest.
-        // Many of them are what the noise is like.
-        let apart = self.rows_apart().to_vec();
-        if self.spares_others && apart.len() <= most_apart(of_rows().count()) {
-            for row in apart {
-                self.weights[row] = self.weights[row].min(axes / all[row]);
-            }
-        }
-    }
-
-    /// The rows that do not belong to the others: beyond their tails, by odds that leave no doubt.
-    pub fn rows_apart(&self) -> &[usize] {
-        if self.for_outliers < FOR_OUTLIERS || self.for_beyond < FOR_BEYOND { &[] } else { &self.beyond_tails }
+        let rows: Vec<usize> = rows.iter().flatten().copied().collect();
+        let of_rows: Vec<f64> = rows.iter().map(|&row| squares[row]).collect();
+        let (weights, apart) = weigh(&of_rows, readings.reported as f64, self.by_anything);
+        rows.iter().zip(weights).for_each(|(&row, weight)| self.weights[row] = weight);
+        let mut beyond: Vec<usize> = apart.beyond.iter().map(|&k| rows[k]).collect();
+        beyond.sort_unstable();
+        self.apart = Apart { beyond, ..apart };
     }
 
     /// The reported part of some rows, a column an axis.
@@ -372,73 +311,6 @@ impl Noise {
     pub fn of_row(&self, row: usize) -> f64 {
         self.own(row, self.growth) / self.weights[row]
     }
-}
-
-/// The degrees of freedom of the heavy-tailed distributions that are tried (the last is as good as
-/// normal), and their sizes over that of the bulk.
-const TAILS: [f64; 6] = [2.0, 3.0, 4.0, 6.0, 12.0, 1e3];
-const TAIL_SIZES: [f64; 4] = [0.6, 0.75, 0.9, 1.05];
-
-/// The parts of the rows that may be beyond the tails, and by which factors these are wider than the bulk: one
-/// for all, or each row one of these and of those that follow, [`MORE`] times the last, up to the farthest row.
-const PARTS_BEYOND: [f64; 3] = [0.003, 0.02, 0.08];
-const WIDER_BEYOND: [f64; 3] = [WIDER, 60.0, 300.0];
-/// See [`PARTS_BEYOND`].
-const MORE: f64 = 5.0;
-
-/// Which of some lengths squared, over the variance of the bulk, are beyond the tails of the others, and
-/// the log-likelihood ratio for that: Student's distribution (Lange, Little and Taylor, JASA 84, 1989)
-/// with some rows from a far wider normal one, against the likeliest without.
-fn beyond_tails(squares: &[f64], axes: f64) -> (f64, Vec<bool>) {
-    let tail = |square: f64, freedom: f64, size: f64| {
-        ln_gamma(0.5 * (freedom + axes))
-            - ln_gamma(0.5 * freedom)
-            - axes * (0.5 * (core::f64::consts::PI * freedom).ln() + size.ln())
-            - 0.5 * (freedom + axes) * (square / (freedom * size * size)).ln_1p()
-    };
-    let wide = |square: f64, wider: f64| {
-        -axes * (0.5 * core::f64::consts::TAU.ln() + wider.ln()) - 0.5 * square / (wider * wider)
-    };
-    let widths = widths_beyond(squares);
-    let any = |square: f64| log_sum(widths.iter().map(|&wider| wide(square, wider))) - (widths.len() as f64).ln();
-    let mut wides: Vec<Vec<f64>> = vec![squares.iter().map(|&square| any(square)).collect()];
-    wides.extend(WIDER_BEYOND.map(|wider| squares.iter().map(|&square| wide(square, wider)).collect()));
-    let (mut without, mut best) = (f64::NEG_INFINITY, (f64::NEG_INFINITY, vec![false; squares.len()]));
-    for freedom in TAILS {
-        for size in TAIL_SIZES {
-            let tails: Vec<f64> = squares.iter().map(|&square| tail(square, freedom, size)).collect();
-            without = without.max(tails.iter().sum());
-            for wide in &wides {
-                for part in PARTS_BEYOND {
-                    let pairs =
-                        || wide.iter().zip(&tails).map(|(wide, tail)| (wide + part.ln(), tail + (-part).ln_1p()));
-                    let sum: f64 = pairs().map(|(a, b)| a.max(b) + (-(a - b).abs()).exp().ln_1p()).sum();
-                    if sum > best.0 {
-                        best = (sum, pairs().map(|(far, near)| far > near).collect());
-                    }
-                }
-            }
-        }
-    }
-    (best.0 - without, best.1)
-}
-
-/// By which factors rows may be wider than the bulk of some lengths squared.
-fn widths_beyond(squares: &[f64]) -> Vec<f64> {
-    let farthest = squares.iter().copied().fold(0.0, f64::max).sqrt();
-    let mut widths = WIDER_BEYOND.to_vec();
-    let mut next = WIDER_BEYOND[2] * MORE;
-    while next < farthest * MORE && next.is_finite() {
-        widths.push(next);
-        next *= MORE;
-    }
-    widths
-}
-
-/// The logarithm of the sum of numbers that are given by theirs.
-fn log_sum(logs: impl Iterator<Item = f64> + Clone) -> f64 {
-    let most = logs.clone().fold(f64::NEG_INFINITY, f64::max);
-    most + logs.map(|one| (one - most).exp()).sum::<f64>().ln()
 }
 
 /// The rows of the blocks that are fitted to, a list each.
@@ -476,39 +348,4 @@ fn size_of((white, log_det): &(Vec<f64>, f64)) -> (f64, f64) {
     let sum: f64 = white.iter().map(|one| one.abs().min(most).powi(2)).sum();
     let variance = (sum / count).max(f64::MIN_POSITIVE);
     (-0.5 * count * variance.ln() - 0.5 * log_det, variance.sqrt())
-}
-
-fn median(mut numbers: Vec<f64>) -> f64 {
-    if numbers.is_empty() {
-        return 0.0;
-    }
-    let middle = numbers.len() / 2;
-    *numbers.select_nth_unstable_by(middle, f64::total_cmp).1
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// Lengths squared of three axes at the middles of equal parts of a distribution: normal, and
-    /// Student's with three degrees of freedom, where they are three times those of F with 3 and 3.
-    #[test]
-    fn tails_are_told_from_what_is_beyond_them() {
-        use statrs::distribution::{ChiSquared, ContinuousCDF, FisherSnedecor};
-        let (normal, heavy) = (ChiSquared::new(3.0).unwrap(), FisherSnedecor::new(3.0, 3.0).unwrap());
-        let middles = || (0..200).map(|k| (f64::from(k) + 0.5) / 200.0);
-        let normal: Vec<f64> = middles().map(|p| normal.inverse_cdf(p)).collect();
-        let heavy: Vec<f64> = middles().map(|p| 3.0 * heavy.inverse_cdf(p)).collect();
-        for squares in [normal, heavy] {
-            assert!(beyond_tails(&squares, 3.0).0 < 1.0);
-            let far = [squares, vec![1e4, 9e3, 1.2e4]].concat();
-            let (gain, which) = beyond_tails(&far, 3.0);
-            assert!(gain > 5.0, "{gain}");
-            let rows: Vec<usize> = (0..far.len()).filter(|&row| which[row]).collect();
-            assert!(rows.ends_with(&[200, 201, 202]) && rows.len() < 6, "{rows:?}");
-            // However far, and however differently.
-            let (gain, which) = beyond_tails(&[&far[..200], &[1e12, 1e7]].concat(), 3.0);
-            assert!(gain > 5.0 && which[200] && which[201], "{gain}");
-        }
-    }
 }

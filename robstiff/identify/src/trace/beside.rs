@@ -42,7 +42,7 @@ pub fn reflector(found: &Found, unseen: &Unseen<'_>) -> Option<NamedEffect> {
 /// Rows that do not belong to the others, where they are few and far off: not the tail of the others.
 pub fn outliers(engine: &Engine<'_>, (found, unseen): (&Found, &Unseen<'_>), case: &Case<'_>) -> Option<NamedEffect> {
     let readings = case.observation.readings();
-    let rows = engine.noise.rows_apart();
+    let rows = engine.noise.apart.rows();
     let fitted = case.rows(true).len();
     if rows.is_empty() || (rows.len() as f64) < OUTLYING_ROWS * fitted as f64 {
         return None;
@@ -51,7 +51,7 @@ pub fn outliers(engine: &Engine<'_>, (found, unseen): (&Found, &Unseen<'_>), cas
     Some(NamedEffect {
         effect: Effect::outliers(rows.len()),
         lines: rows.iter().map(|&row| readings.lines[row]).collect(),
-        probability: 1.0 - (-engine.noise.for_beyond).exp(),
+        probability: engine.noise.apart.probability(),
         class: vec![(name, 1.0)],
         recurs: 1.0,
         holdout_rms: unseen.rms(&found.best, found.kappa).unwrap_or_default(),

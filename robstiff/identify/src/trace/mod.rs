@@ -33,10 +33,10 @@ use crate::campaign::Campaign;
 pub use crate::effects::{Number as EffectParameter, Place};
 use crate::fit::case::Case;
 use crate::identify::Error;
+use crate::judge::gates;
 pub use crate::judge::thresholds::SUSPECTED;
 use crate::judge::thresholds::{DISTINCT, FEWEST_POSES, FOLDS};
 pub use crate::judge::verdict::Verdict;
-use crate::judge::{gates, verdict};
 use crate::select::Engine;
 use crate::select::always::{Declared, Own};
 use crate::select::folds::nested;
@@ -258,22 +258,5 @@ fn against_the_loads(campaign: &Campaign, engine: &Engine<'_>, found: &crate::se
         "every joint that the readings show comes out rigid: they go against the loads, so that they or the loads have \
          a wrong sign or frame"
             .into()
-    })
-}
-
-/// The verdict, from what was judged.
-fn concluded(
-    (named, outlying): (usize, f64),
-    (suspected, looks_like): (&[String], &[String]),
-    judgement: &gates::Judgement,
-    over_noise: Option<verdict::OverNoise>,
-) -> (Verdict, String) {
-    verdict::verdict(&verdict::Evidence {
-        named,
-        outlying,
-        suspected,
-        looks_like,
-        discrepancy: judgement.discrepancy,
-        over_noise,
     })
 }

@@ -10,7 +10,7 @@ use super::features::depends_on;
 use super::forms::between_forms;
 use super::found::Found as Effect;
 use super::written::described;
-use super::{NamedEffect, Nested, Rival, Suspected, Trace, Verdict, concluded};
+use super::{NamedEffect, Nested, Rival, Suspected, Trace, Verdict};
 use crate::campaign::{Campaign, Data};
 use crate::effects::{Number, Offers, Scene, Side, What};
 use crate::fit::case::Case;
@@ -18,10 +18,11 @@ use crate::fit::estimate::estimates;
 use crate::fit::noise::{self, NoiseSource};
 use crate::identify::Error;
 use crate::judge::gates::{Judgement, Weighed};
-use crate::judge::thresholds::{MATTERS, SUSPECTED};
-use crate::judge::verdict::OverNoise;
+use crate::judge::thresholds::{FAR_ABOVE, MATTERS, SUSPECTED};
+use crate::judge::verdict::{Evidence, OverNoise, verdict};
 use crate::model::Term;
 use crate::regression::Fit;
+use crate::regression::noise::OUTLYING;
 use crate::select::classes::ODDS;
 use crate::select::engine::Engine;
 use crate::select::folds;
@@ -84,7 +85,15 @@ pub fn report(
     let reflector = beside::reflector(found, &unseen);
     let many = effects.len() + usize::from(reflector.is_some());
     let outlying = outliers.as_ref().map_or(0.0, |of| of.lines.len() as f64 / case.rows(true).len() as f64);
-    let (verdict, why) = concluded((many, outlying), (&names, &looks_like), judgement, over_noise);
+    let (verdict, why) = verdict(&Evidence {
+        named: many,
+        outlying,
+        suspected: &names,
+        looks_like: &looks_like,
+        far_off: &far_off(engine, case, (&found.own.left, plain)),
+        discrepancy: judgement.discrepancy,
+        over_noise,
+    });
     effects.extend(reflector.into_iter().chain(outliers));
     effects.iter_mut().for_each(|named| named.partial = verdict == Verdict::Partial);
     let robots = |form: &&usize| found.layout.candidates[found.layout.forms[**form].candidate].kind.side == Side::Robot;
@@ -214,6 +223,18 @@ fn declared(campaign: &Campaign, case: &Case<'_>) -> DVector<f64> {
     let values = layout.values(&values.collect());
     let predicted = case.observation.predict(case.observation.world(), &layout.parameters, &values);
     &case.observation.readings().values - predicted
+}
+
+/// The lines of rows that are far off, where the error of all of them is far above the noise of most. Those that do not
+/// belong to the others are reported by themselves.
+fn far_off(engine: &Engine<'_>, case: &Case<'_>, (left, noise): (&DVector<f64>, f64)) -> Vec<usize> {
+    let readings = case.observation.readings();
+    let apart = engine.noise.apart.rows();
+    let rows: Vec<usize> = case.rows(true).into_iter().filter(|row| !apart.contains(row)).collect();
+    if readings.rms(left, rows.iter().copied()) <= FAR_ABOVE * noise {
+        return Vec::new();
+    }
+    rows.into_iter().filter(|&row| engine.noise.weights[row] < OUTLYING).map(|row| readings.lines[row]).collect()
 }
 
 /// An effect of the best set with its numbers.

@@ -190,7 +190,7 @@ fn outliers_are_beyond_the_tails() {
     let mut engine = case.engine(&campaign.robot);
     engine.run_from_alone(&|_| ()).expect("it can be fitted");
     let noise = &engine.noise;
-    assert_eq!(noise.beyond_tails, [20, 77, 140], "{} {} {:?}", noise.for_beyond, noise.for_outliers, noise.weights);
+    assert_eq!(noise.apart.beyond, [20, 77, 140], "{:?} {:?}", noise.apart, noise.weights);
     let found = traced(&campaign);
     assert_eq!(names(&found), ["outliers@rig".to_string()], "{:?}", found.suspected);
     assert_eq!(found.verdict, Verdict::Partial, "{}", found.why);
