@@ -13,6 +13,8 @@
 
 use robstiff_identify::trace::{EffectParameter, Suspected, Trace, Verdict};
 
+use crate::reliability::Claim;
+
 /// Standard deviations that have 95 % of a normal distribution within.
 const WITHIN: f64 = 1.959_964;
 
@@ -108,6 +110,18 @@ pub fn judge(told: &Told, hidden: &[String], would_do: impl Fn(&str, usize) -> b
         wrong: wrong.map(|(name, _)| name.name.clone()).collect(),
         whole_truth: matches!(told.verdict, Verdict::Explained | Verdict::Adequate),
     }
+}
+
+/// Every class that a trace tells a probability of, named or suspected: it is right where one of its
+/// members is something hidden, or would do as well.
+pub fn claims(trace: &Trace, hidden: &[String], would_do: impl Fn(&str, usize) -> bool) -> Vec<Claim> {
+    let is_there = |class: &[(String, f64)]| {
+        let mut pairs = class.iter().flat_map(|(member, _)| (0..hidden.len()).map(move |index| (member, index)));
+        pairs.any(|(member, index)| *member == hidden[index] || would_do(member, index))
+    };
+    let named = trace.effects.iter().map(|of| (of.probability, is_there(&of.class)));
+    let suspected = trace.suspected.iter().map(|of| (of.probability, is_there(&of.class)));
+    named.chain(suspected).map(|(probability, is_right)| Claim { probability, is_right }).collect()
 }
 
 /// Whether the hidden things from `index` on can each have a name that is not

@@ -12,4 +12,5 @@ pub mod judge_tracing;
 pub mod matrix;
 pub mod positions;
 pub mod reach;
+pub mod reliability;
 pub mod simulator;

@@ -13,7 +13,8 @@ use robstiff_identify::trace::{Options, Trace, Verdict, trace};
 use robstiff_robots::{Description, Effect};
 
 use crate::folder::Folder;
-use crate::judge_tracing::{Name, Told};
+use crate::judge_tracing::{Name, Told, claims};
+use crate::reliability::Claim;
 use crate::simulator::{DhColumn, Follows, Hidden, Outside, Positions, five_axis, scattered, six_axis};
 
 /// Payloads that show what yields (kg).
@@ -46,6 +47,8 @@ pub struct Came {
     /// Numbers of effects that were named as hidden, and those of them whose 95 %
     /// interval holds the truth.
     pub numbers: [usize; 2],
+    /// The classes that a probability is told of.
+    pub claims: Vec<Claim>,
 }
 
 /// Reads a simulated campaign back from files, with its noise declared; `reflector` is where the
@@ -199,7 +202,8 @@ pub fn run(drawn: &Drawn) -> Came {
         names(told.into_iter().map(|name| name.name).collect())
     );
     let whole_truth = matches!(trace.verdict, Verdict::Explained | Verdict::Adequate);
-    Came { told, right, whole_truth, numbers }
+    let hidden: Vec<String> = hidden.iter().map(Hidden::name).collect();
+    Came { told, right, whole_truth, numbers, claims: claims(&trace, &hidden, |_, _| false) }
 }
 
 /// Of the numbers, but those of slips and drifts, that were named as they are hidden, how many there are, and

@@ -9,6 +9,7 @@ use std::{fs, process, thread};
 use clap::{Parser, ValueEnum};
 use indicatif::{ProgressBar, ProgressStyle};
 use robstiff_tests::matrix::{Case, Group, POSES, Record, groups, run_keeping, table};
+use robstiff_tests::reliability::{self, Claim};
 
 /// Traces simulated campaigns with something hidden in them, and judges what is said of them
 #[derive(Parser)]
@@ -35,6 +36,9 @@ struct Arguments {
     /// Where all runs are written, and beside it all numbers with an interval
     #[arg(long, default_value = "target/matrix.csv")]
     csv: PathBuf,
+    /// Where the reliability diagram is drawn
+    #[arg(long)]
+    diagram: Option<PathBuf>,
     /// A folder for all campaigns, to trace one by hand
     #[arg(long)]
     keep: Option<PathBuf>,
@@ -57,12 +61,19 @@ fn main() {
     let cases = cases(&chosen, &arguments);
     let records = run_all(&cases, arguments.jobs.max(1), arguments.keep.as_deref());
     print!("{}", table::markdown(&records));
+    // What is outside the catalogue has no probability: that of a name is of the candidates that there are.
+    let inside = records.iter().filter(|record| !record.ready.case.group.hides_what_is_outside());
+    let claims: Vec<Claim> = inside.flat_map(|record| record.claims.iter().copied()).collect();
+    print!("\n{}", reliability::table(&claims));
     if let Some(folder) = arguments.csv.parent() {
         fs::create_dir_all(folder).unwrap_or_else(|problem| fail(&arguments.csv, &problem));
     }
     let write = |path: &Path, text: String| fs::write(path, text).unwrap_or_else(|problem| fail(path, &problem));
     write(&arguments.csv, table::csv(&records));
     write(&arguments.csv.with_extension("numbers.csv"), table::numbers_csv(&records));
+    if let Some(path) = &arguments.diagram {
+        write(path, reliability::diagram(&claims));
+    }
 }
 
 fn fail(path: &Path, problem: &std::io::Error) -> ! {

@@ -6,6 +6,7 @@ use std::thread;
 use clap::Parser;
 use robstiff_tests::matrix::interval::interval;
 use robstiff_tests::positions::{Came, Drawn, draw, run};
+use robstiff_tests::reliability;
 
 /// Traces simulated campaigns of absolute positions, and judges what is said of them
 #[derive(Parser)]
@@ -38,7 +39,7 @@ const GROUPS: [(&str, usize, bool); 5] = [
 fn main() {
     let arguments = Arguments::parse();
     println!("| hidden | runs that matter | as it should be |\n|---|---:|---|");
-    let mut numbers = [0; 2];
+    let (mut numbers, mut claims) = ([0; 2], Vec::new());
     for (group, (name, effects, outside)) in (0..).zip(GROUPS) {
         let seeds = (0..arguments.count).map(|run| arguments.seed * 1_000_000 + group * 100_000 + run);
         let drawn: Vec<Drawn> = seeds.map(|seed| draw(effects, outside, seed)).filter(|drawn| drawn.matters).collect();
@@ -52,9 +53,11 @@ fn main() {
         println!("| {name} | {} | {right} [{low:.0}-{high:.0} %] |", came.len());
         for came in came {
             (0..2).for_each(|k| numbers[k] += came.numbers[k]);
+            claims.extend(came.claims.into_iter().filter(|_| !outside));
         }
     }
     println!("\nIntervals of 95 % held the truth for {} of {} numbers.", numbers[1], numbers[0]);
+    print!("\n{}", reliability::table(&claims));
 }
 
 /// What came of each, some at a time.

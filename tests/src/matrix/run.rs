@@ -12,7 +12,8 @@ use robstiff_robots::Description;
 use super::alias::would_do;
 use super::case::{Case, Expected, Group, Ready};
 use super::truths::Truths;
-use crate::judge_tracing::{Held, Judgement, Told, held_joints, held_numbers, judge};
+use crate::judge_tracing::{Held, Judgement, Told, claims, held_joints, held_numbers, judge};
+use crate::reliability::Claim;
 use crate::simulator::{Hidden, Scenario, Simulated};
 
 /// What is added to a campaign's seed for poses that it does not have.
@@ -39,6 +40,8 @@ pub struct Record {
     pub numbers: Vec<Held>,
     /// The same of joints' compliances.
     pub joints: Vec<Held>,
+    /// The classes that a probability is told of.
+    pub claims: Vec<Claim>,
     /// How long tracing took (s).
     pub seconds: f64,
 }
@@ -113,6 +116,7 @@ pub fn run_keeping(case: Case, kept: Option<&Path>) -> Record {
             elsewhere,
             numbers: Vec::new(),
             joints: Vec::new(),
+            claims: Vec::new(),
             seconds,
         };
     };
@@ -136,6 +140,7 @@ pub fn run_keeping(case: Case, kept: Option<&Path>) -> Record {
         joints: joints.map_or_else(Vec::new, |truths| held_joints(&told, &truths)),
         unseen: traced.after.holdout_rms / floor,
         elsewhere: elsewhere(&ready, &traced) / floor,
+        claims: claims(&traced, &names, |name, index| would_do(&ready, name, index)),
         judgement,
         looks_like: traced.looks_like,
         told: Some(told),
@@ -161,7 +166,10 @@ fn elsewhere(ready: &Ready, trace: &Trace) -> f64 {
 }
 
 /// Writes a campaign and reads it, as a user would have it.
-fn read(simulated: &Simulated, declared: &Description) -> Campaign {
+///
+/// # Panics
+/// Where a file cannot be written or the campaign cannot be read.
+pub fn read(simulated: &Simulated, declared: &Description) -> Campaign {
     let thread: String = format!("{:?}", thread::current().id()).chars().filter(char::is_ascii_digit).collect();
     let folder: PathBuf = env::temp_dir().join(format!("robstiff-matrix-{}-{thread}", process::id()));
     simulated.write(&folder, &declared.to_yaml()).expect("a temporary folder");
@@ -190,6 +198,7 @@ mod tests {
             elsewhere: 1.0,
             numbers: Vec::new(),
             joints: Vec::new(),
+            claims: Vec::new(),
             seconds: 0.0,
         }
     }
