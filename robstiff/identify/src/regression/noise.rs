@@ -91,6 +91,11 @@ pub struct Noise {
     /// Whether a row that does not belong to the others weighs by its own residual. Where candidates are searched it
     /// does not: what is missing looks like such rows.
     pub spares_others: bool,
+    /// What discrepancies are times [`DISCREPANCIES`]: 1 where candidates are searched, and as much as they ask for
+    /// where what is missing stays.
+    pub lack: f64,
+    /// How many numbers the residuals are free of; zero where candidates are searched.
+    pub fitted: f64,
     /// What brings each channel to the noise of the first.
     pub scales: Vec<f64>,
     /// Which rows of an encoder share a level, and its variance `tau` over that of one reading.
@@ -121,6 +126,8 @@ impl Noise {
             growth: 0.0,
             may_grow: readings.differences,
             spares_others: false,
+            lack: 1.0,
+            fitted: 0.0,
             scales: (0..channels).map(|channel| if channel == 0 { 1.0 } else { lever }).collect(),
             level: (Level::Block, LEVELS[LEVELS.len() - 1]),
             outlying: 0.0,
@@ -146,7 +153,8 @@ impl Noise {
             let tried = shares.iter().flat_map(|share| parts.iter().map(move |part| (*share, *part)));
             let judged = tried.map(|(share, part)| {
                 let price = if part > 0.0 { AGAINST_GROWTH } else { 0.0 }
-                    + if share > 0.0 && share < 1.0 { AGAINST_SOME } else { 0.0 };
+                    + if share > 0.0 && share < 1.0 { AGAINST_SOME } else { 0.0 }
+                    + self.hidden(readings, share);
                 let (likelihood, growth) = self.grown(readings, left, kappa, &rows, (share, part));
                 (likelihood - price, share, growth)
             });
@@ -156,6 +164,14 @@ impl Noise {
             self.learn_weights(readings, left, kappa, &rows);
         }
         self.learn_encoders(readings, left, kappa, &rows);
+    }
+
+    /// How much of the log-likelihood of an unloaded reading the numbers of a fit may have taken: each takes at most one of
+    /// those that visits share.
+    fn hidden(&self, readings: &Readings, share: f64) -> f64 {
+        let visits = readings.visit.iter().max().map_or(1, |last| last + 1);
+        let of_visit = readings.rows() as f64 / visits as f64;
+        0.5 * self.fitted * ((1.0 + of_visit) / (1.0 + share * of_visit)).ln()
     }
 
     /// The log-likelihood where noise has a part in proportion to the displacement, and how it grows
@@ -174,6 +190,10 @@ impl Noise {
             for _ in 0..GROWING {
                 growth = part / size;
                 (likelihood, size) = self.likelihood(readings, left, kappa, rows, (share, growth));
+            }
+            // Nothing grows by a part that is nearer to the one below, or to none.
+            if size * growth < 0.5 * part {
+                return (f64::NEG_INFINITY, 0.0);
             }
         }
         (likelihood, growth)
@@ -290,13 +310,24 @@ impl Noise {
     fn learn_weights(&mut self, readings: &Readings, left: &DVector<f64>, kappa: f64, rows: &[Vec<usize>]) {
         let size = self.likelihood(readings, left, kappa, rows, (self.shared, self.growth)).1;
         let mut squares = vec![0.0; readings.rows()];
+        // How far a row is off what the others of its pose say of it, and the variance of what they say, over that of
+        // one reading.
+        let mut beside = vec![(0.0, 0.0); readings.rows()];
         for rows in rows.iter().filter(|rows| !rows.is_empty()) {
             let covariance = self.covariance(readings, rows, kappa, (self.shared, self.growth));
             let Some(factor) = covariance.cholesky() else { continue };
             let solved = factor.solve(&self.reported(readings, left, rows));
+            let inverse = self.spares_others.then(|| factor.inverse());
             for (k, &row) in rows.iter().enumerate() {
-                let own = self.own(row, self.growth) / self.weights[row];
-                squares[row] = solved.row(k).norm_squared() * own * own / self.own(row, self.growth) / (size * size);
+                let own = self.own(row, self.growth);
+                let weighed = own / self.weights[row];
+                let solved = solved.row(k).norm_squared() / (size * size);
+                squares[row] = solved * weighed * weighed / own;
+                if let Some(inverse) = &inverse {
+                    let said = (1.0 / inverse[(k, k)] - weighed).max(0.0);
+                    beside[row] = (solved / inverse[(k, k)].powi(2), said);
+                    squares[row] = beside[row].0 / (own + said);
+                }
             }
         }
         let axes = readings.reported as f64;
@@ -325,6 +356,12 @@ impl Noise {
         self.for_beyond = ratio;
         self.beyond_tails = of_rows().zip(beyond).filter(|(_, beyond)| *beyond).map(|(row, _)| *row).collect();
         self.beyond_tails.sort_unstable();
+        if self.spares_others && is_loaded(readings) {
+            // What is missing grows with the load, too.
+            let most = |row: usize| (PROPORTIONAL[PROPORTIONAL.len() - 1] * self.sizes[row] / size).powi(2);
+            let is_beyond: Vec<bool> = beside.iter().enumerate().map(|(row, off)| off.0 > most(row)).collect();
+            self.beyond_tails.retain(|&row| is_beyond[row]);
+        }
         for &row in of_rows() {
             self.weights[row] = 1.0 - outlying[row] + outlying[row] / (WIDER * WIDER);
         }
@@ -333,7 +370,8 @@ impl Noise {
         let apart = self.rows_apart().to_vec();
         if self.spares_others && apart.len() <= most_apart(of_rows().count()) {
             for row in apart {
-                self.weights[row] = self.weights[row].min(axes / all[row]);
+                let (own, (off, said)) = (self.own(row, self.growth), beside[row]);
+                self.weights[row] = self.weights[row].min(own / (off / axes - said).max(own));
             }
         }
     }
@@ -354,7 +392,7 @@ impl Noise {
             let (a, b) = (rows[i], rows[j]);
             let own = if i == j { self.own(a, growth) / self.weights[a] } else { 0.0 };
             let visit = if readings.visit[a] == readings.visit[b] { share } else { 0.0 };
-            own + visit + kappa * readings.force[a].dot(&readings.force[b])
+            own + visit + self.lack * kappa * readings.force[a].dot(&readings.force[b])
         })
     }
 

@@ -10,7 +10,7 @@ use super::found::Found;
 use crate::campaign::Campaign;
 use crate::fit::estimate::{Estimate, with_values};
 use crate::identify::Error;
-use crate::identify::readable::is_readable;
+use crate::fit::readable::is_readable;
 use crate::select::always::{Declared, Own};
 use robstiff_robots::DhEntry;
 
