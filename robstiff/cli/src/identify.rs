@@ -4,8 +4,7 @@ use std::path::PathBuf;
 
 use robstiff_identify::campaign::{Campaign, Data, Displacements, Positions};
 use robstiff_identify::identify::{
-    Basis, Covariance, Estimate, Identification, NoiseSource, Visibility, identify, misread, noise_not_used,
-    off_by_one_factor,
+    Estimate, Identification, NoiseSource, Scatter, Visibility, identify, misread, noise_not_used, off_by_one_factor,
 };
 use robstiff_identify::rounded;
 use robstiff_robots::Description;
@@ -74,11 +73,10 @@ fn page(campaign: &Campaign, found: &Identification) -> String {
             None => "\n".to_owned(),
         };
     }
-    if let (Some(covariance), Data::Displacement(data)) = (&found.covariance, &campaign.data) {
-        page += &noise(covariance, data, &found.left_out);
+    if let (Some(scatter), Data::Displacement(data)) = (&found.scatter, &campaign.data) {
+        page += &noise(scatter, data);
     }
-    // Of displacements the noise says it, and how far they are off.
-    if !matches!(campaign.data, Data::Displacement(_)) && !found.left_out.is_empty() {
+    if !found.left_out.is_empty() {
         let lines: Vec<String> = found.left_out.iter().map(usize::to_string).collect();
         let (s, do_not) =
             if lines.len() == 1 { ("", "does not belong, and has") } else { ("s", "do not belong, and have") };
@@ -100,29 +98,15 @@ fn payloads_vary(data: &Positions) -> bool {
     data.rows.iter().any(|row| *first[row.visit].get_or_insert(row.payload) != row.payload)
 }
 
-/// Sentences on how the readings hang together, and on those that do not belong.
-fn noise(covariance: &Covariance, data: &Displacements, left_out: &[usize]) -> String {
+/// Sentences on how the readings scatter.
+fn noise(scatter: &Scatter, data: &Displacements) -> String {
     let mut said = String::new();
-    if covariance.unequal {
-        let axes: Vec<String> = covariance.own[..3].iter().map(|own| micrometres(*own)).collect();
-        let by = if covariance.basis == Basis::Model { ", by what the model leaves" } else { "" };
-        said += &format!("the axes differ: {} um along x, y and z is a row's own noise{by}\n", axes.join(", "));
-    }
-    if covariance.share.is_some() {
-        let shared = decimals(covariance.shared, 2);
+    if data.visits.len() < data.rows.len() {
+        let shared = decimals(scatter.shared, 2);
         said += &format!("an unloaded reading has {shared} times the variance of what a row has to itself\n");
     }
-    for outlier in &covariance.outliers {
-        let out =
-            if outlier.rows.iter().all(|row| left_out.contains(&data.rows[*row].line)) { ", left out" } else { "" };
-        said += &format!("does not belong{out}: {}\n", outlier.told(data));
-    }
-    let is_told = |line: &usize| {
-        covariance.outliers.iter().flat_map(|outlier| &outlier.rows).any(|&row| data.rows[row].line == *line)
-    };
-    for line in left_out.iter().filter(|line| !is_told(line)) {
-        said +=
-            &format!("does not belong, left out: line {line}: the other poses contradict its load or its reading\n");
+    if scatter.growth > 0.0 {
+        said += &format!("the noise grows by {} % of the displacement\n", decimals(100.0 * scatter.growth, 1));
     }
     said
 }
@@ -133,7 +117,6 @@ pub fn source_of(source: NoiseSource) -> &'static str {
         NoiseSource::Declared => "as declared",
         NoiseSource::Rounded => "as declared, which is below the step of the readings, and what rounding to it adds",
         NoiseSource::Repetitions => "from repeated readings",
-        NoiseSource::Poses => "from what loads at one pose leave when each pose has its own response",
         NoiseSource::Residuals => "from what the model leaves, so at most that",
     }
 }
@@ -232,7 +215,7 @@ fn document(campaign: &Campaign, found: &Identification) -> Value {
         "poses": found.poses,
         "left_out": found.left_out,
         "noise_um": found.noise.map(|(noise, _)| json::number(noise * 1e6)),
-        "covariance": found.covariance.as_ref().map(covariance),
+        "scatter": found.scatter.as_ref().map(scatter),
         "declared": {"rms_um": found.rms_declared.map(|rms| json::number(rms * 1e6))},
         "identified": {"rms_um": found.rms.map(|rms| json::number(rms * 1e6))},
         "compliances": numbers(&found.estimates),
@@ -241,13 +224,12 @@ fn document(campaign: &Campaign, found: &Identification) -> Value {
     })
 }
 
-fn covariance(covariance: &Covariance) -> Value {
+fn scatter(scatter: &Scatter) -> Value {
     json!({
-        "own_um": json::numbers(covariance.own[..3].iter().map(|own| own * 1e6)),
-        "own_urad": json::numbers(covariance.own[3..].iter().map(|own| own * 1e6)),
-        "shared": json::number(covariance.shared),
-        "estimated": covariance.reading().is_some(),
-        "outliers": covariance.outliers.len(),
+        "own_um": json::number(scatter.own * 1e6),
+        "own_urad": scatter.rotation.map(|own| json::number(own * 1e6)),
+        "shared": json::number(scatter.shared),
+        "growth": json::number(scatter.growth),
     })
 }
 
@@ -271,7 +253,7 @@ fn number(estimate: &Estimate, all: &[Estimate]) -> Value {
         "unit": estimate.unit,
         "visibility": seen,
         "at_bound": estimate.at_bound,
-        "confounded_with": others.chain(&estimate.confounded_with).map(String::as_str).collect::<Value>(),
+        "confounded_with": others.map(String::as_str).collect::<Value>(),
         "deviation": estimate.deviation().map(json::number),
         "noteworthy": estimate.is_noteworthy(),
     })

@@ -81,7 +81,7 @@ fn estimate(estimate: &Estimate) -> Value {
         "unit": estimate.unit,
         "visibility": match estimate.visibility {
             Visibility::Seen => "seen",
-            Visibility::Unseen => "unseen",
+            Visibility::Unseen | Visibility::Confounded(_) => "unseen",
         },
         "at_bound": estimate.at_bound,
         "deviation": estimate.deviation().map(number),

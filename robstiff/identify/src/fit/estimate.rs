@@ -8,12 +8,14 @@ use crate::select::solve::Solved;
 use robstiff::Effect;
 
 /// What a campaign can say about a number.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Visibility {
     /// It was identified.
     Seen,
     /// The readings say next to nothing of it; it kept its value.
     Unseen,
+    /// They would show it, were it not for these others (by index); it kept its value.
+    Confounded(Vec<usize>),
 }
 
 /// One number with its uncertainty.
@@ -131,7 +133,7 @@ pub fn with_value(mut changed: Description, number: &Declared, value: f64) -> De
 }
 
 /// Sets the compliance of a joint; of a compound one the parts keep their proportion.
-fn set_compliance(parts: &mut Vec<Part>, value: f64) {
+pub fn set_compliance(parts: &mut Vec<Part>, value: f64) {
     let sum: f64 = parts.iter().map(|part| part.value).sum();
     if parts.is_empty() {
         parts.push(Part { name: String::new(), value });

@@ -20,6 +20,13 @@ pub enum NoiseSource {
     Residuals,
 }
 
+impl NoiseSource {
+    /// Whether the campaign says it.
+    pub fn is_declared(self) -> bool {
+        matches!(self, Self::Declared | Self::Rounded)
+    }
+}
+
 /// With fewer degrees of freedom a variance is uncertain by half and more (`sqrt(2 / 10)` is 45 %).
 const FEWEST_REPETITIONS: usize = 10;
 

@@ -10,26 +10,20 @@ use nalgebra::{DMatrix, DVector};
 use robstiff_robots::Description;
 
 use super::case::Case;
+use super::estimate::{NOTEWORTHY_DEVIATION, Visibility, with_value};
+use super::readable::{is_readable, shares};
 use crate::effects::What;
+use crate::model::described::fixed;
 use crate::model::{Sign, Size};
 use crate::probability::{WITHIN, student};
+use crate::regression::Fit;
 use crate::regression::tails::most_apart;
 use crate::select::Layout;
 use crate::select::always::{Declared, Own};
 use crate::select::engine::{Engine, FINEST, Point};
 use crate::select::problem::moves;
 use crate::select::solve::Solved;
-
-/// What the readings say of a number.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Shown {
-    /// It was fitted.
-    Seen,
-    /// They say next to nothing of it.
-    Unseen,
-    /// They would show it, were it not for these others (by index).
-    Confounded(Vec<usize>),
-}
+use robstiff::Effect;
 
 /// The description's own numbers alone.
 pub struct Alone<'e> {
@@ -41,8 +35,10 @@ pub struct Alone<'e> {
     pub layout: Layout,
     /// The fit.
     pub solved: Solved,
+    /// How sure numbers are where those that are held at zero may be off it by what was declared.
+    loose: Option<Fit>,
     /// What the readings say of each number.
-    pub shown: Vec<Shown>,
+    pub shown: Vec<Visibility>,
     /// The least variance of one reading: that of its rounding.
     least: f64,
 }
@@ -61,6 +57,10 @@ const FAR: f64 = 30.0;
 /// See [`FAR`].
 const FAR_STANDS_OUT: f64 = 10.0;
 
+/// What a number that is held as declared is taken to be off by, as a part of it: others are no surer than that
+/// lets them be. What the makers of arms declare stayed within it.
+const HELD_OFF: f64 = NOTEWORTHY_DEVIATION;
+
 /// With this much more of chi-square, the square of two standard deviations, the readings tell zero from what
 /// was declared.
 const TOLD_APART: f64 = 4.0;
@@ -72,32 +72,99 @@ impl<'e> Alone<'e> {
         let own = engine.declared();
         // An axis has few rows, and those without a load may read exactly zero: by them noise would be all growth.
         engine.noise.may_grow &= engine.scene.what != What::Clamped;
-        engine.noise.by_anything = true;
+        engine.noise.spares_others = true;
+        engine.noise.weights = evened(&engine);
         engine.fit_alone()?;
         let layout = Layout { candidates: Vec::new(), forms: Vec::new(), ..engine.layout() };
         let likely = likely(&engine, &layout, own.len());
-        let shown = vec![Shown::Seen; own.len()];
+        let shown = vec![Visibility::Seen; own.len()];
         let solved = engine.settle(&layout)?;
-        let mut alone = Self { engine, own, layout, solved, shown, least };
+        let mut alone = Self { engine, own, layout, solved, loose: None, shown, least };
+        alone.vary()?;
         // What others hide is held before nothing but the readings says what a number is.
         for wide in [1.0, WIDE] {
             for k in alone.seen() {
                 alone.layout.parameters[alone.layout.fixed + k].size = Size::Flat(wide * likely[k]);
             }
-            alone.solved = alone.engine.settle(&alone.layout)?;
+            alone.settle()?;
             while let Some((k, shown)) = alone.least_told() {
                 alone.shown[k] = shown;
-                // A prior without width.
-                alone.layout.parameters[alone.layout.fixed + k].size = Size::Of(0.0);
-                alone.solved = alone.engine.settle(&alone.layout)?;
+                let declared = alone.own[k].parameter.mean.abs();
+                alone.layout.parameters[alone.layout.fixed + k].size = Size::Of(HELD_OFF * declared);
+                alone.settle()?;
             }
         }
+        alone.bound()?;
         Some(alone)
+    }
+
+    /// Fits them once more.
+    fn settle(&mut self) -> Option<()> {
+        self.solved = self.engine.settle(&self.layout)?;
+        self.vary()?;
+        self.loose = self.loosened();
+        Some(())
+    }
+
+    /// The fit where numbers that are held at zero may be off it.
+    fn loosened(&self) -> Option<Fit> {
+        let held = &self.solved.held;
+        let mut parameters = self.layout.parameters.clone();
+        for &column in held {
+            let parameter = &mut parameters[column];
+            (parameter.size, parameter.mean) = (Size::Of(self.own[column - self.layout.fixed].parameter.mean), 0.0);
+        }
+        let (keys, fixed, always) = (self.layout.keys.clone(), self.layout.fixed, self.layout.always);
+        let layout = Layout { parameters, keys, fixed, always, candidates: Vec::new(), forms: Vec::new() };
+        if held.is_empty() { None } else { Some(self.engine.free(&layout)?.fit) }
+    }
+
+    /// Fits them again until what a compliance varies by with its coordinate, a share of it, goes with it.
+    fn vary(&mut self) -> Option<()> {
+        let varies = |effect: &Effect| matches!(effect, Effect::PoseDependentCompliance { .. });
+        if !self.engine.robot.effects.iter().any(varies) {
+            return Some(());
+        }
+        for _ in 0..PASSES {
+            let fixed = fixed(&self.description());
+            self.layout.parameters.splice(..fixed.len(), fixed);
+            self.solved = self.engine.settle(&self.layout)?;
+        }
+        Some(())
+    }
+
+    /// Holds numbers of effects next to the largest that a description takes beside the others, where the fit goes
+    /// beyond them.
+    fn bound(&mut self) -> Option<()> {
+        for _ in 0..PASSES {
+            let found = self.description();
+            if is_readable(&found) {
+                break;
+            }
+            let Some(shares) = shares(&found) else { break };
+            for k in self.seen() {
+                if let Own::Effect(index, _) = self.own[k].what
+                    && shares[index] < 1.0
+                {
+                    let at = shares[index] * self.value(k);
+                    let parameter = &mut self.layout.parameters[self.layout.fixed + k];
+                    (parameter.mean, parameter.size) = (at, Size::Of(0.0));
+                }
+            }
+            self.settle()?;
+        }
+        Some(())
+    }
+
+    /// The description with the numbers that the readings show.
+    pub fn description(&self) -> Description {
+        let value = |changed, k: usize| with_value(changed, &self.own[k], self.value(k));
+        self.seen().into_iter().fold(self.engine.robot.clone(), value)
     }
 
     /// The indices of the numbers that the readings show.
     pub fn seen(&self) -> Vec<usize> {
-        (0..self.own.len()).filter(|&k| self.shown[k] == Shown::Seen).collect()
+        (0..self.own.len()).filter(|&k| self.shown[k] == Visibility::Seen).collect()
     }
 
     /// Whether a number is held at zero, for it cannot be negative.
@@ -115,7 +182,7 @@ impl<'e> Alone<'e> {
     /// The value of a number, as fitted or as declared.
     pub fn value(&self, k: usize) -> f64 {
         match self.shown[k] {
-            Shown::Seen => self.solved.fit.value(self.layout.fixed + k),
+            Visibility::Seen => self.solved.fit.value(self.layout.fixed + k),
             _ => self.own[k].parameter.mean,
         }
     }
@@ -123,8 +190,11 @@ impl<'e> Alone<'e> {
     /// One standard deviation of a number that was fitted: of the normal distribution that has the same 95 %
     /// interval, however few readings there are.
     pub fn std(&self, k: usize) -> Option<f64> {
-        let at = self.solved.fit.place(self.layout.fixed + k).filter(|_| self.shown[k] == Shown::Seen)?;
-        Some(self.solved.fit.std[at] * self.widened())
+        let column = self.layout.fixed + k;
+        let at = self.solved.fit.place(column).filter(|_| self.shown[k] == Visibility::Seen)?;
+        let loose = self.loose.as_ref().and_then(|fit| Some(fit.std[fit.place(column)?]));
+        let std = self.solved.fit.std[at].max(loose.unwrap_or(0.0));
+        Some(std * self.widened()).filter(|std| *std > 0.0)
     }
 
     /// By how much standard deviations are larger than in a fit: the variance of a reading is itself known from
@@ -164,7 +234,7 @@ impl<'e> Alone<'e> {
 
     /// The number that the readings tell the least of, if they do not tell it from what was declared: its
     /// standard deviation hides it, or zero fits, where it is held, and the declared value as well.
-    fn least_told(&self) -> Option<(usize, Shown)> {
+    fn least_told(&self) -> Option<(usize, Visibility)> {
         // Readings against the loads are refused as such, not held as if they told nothing.
         if self.is_against_the_loads() {
             return None;
@@ -189,7 +259,7 @@ impl<'e> Alone<'e> {
             let more = ((declared - value).powi(2) - value * value) / (std * std);
             (declared > 0.0 && more < TOLD_APART).then_some((more, k))
         });
-        alike.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, k)| (k, Shown::Unseen))
+        alike.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, k)| (k, Visibility::Unseen))
     }
 
     /// Whether a number stands out from its standard deviation.
@@ -201,9 +271,9 @@ impl<'e> Alone<'e> {
     }
 
     /// What hides a number: others where it would show with one of them known, or nothing does.
-    fn hidden_by(&self, k: usize) -> Shown {
+    fn hidden_by(&self, k: usize) -> Visibility {
         let fit = &self.solved.fit;
-        let Some(at) = fit.place(self.layout.fixed + k) else { return Shown::Unseen };
+        let Some(at) = fit.place(self.layout.fixed + k) else { return Visibility::Unseen };
         let (covariance, widened) = (fit.covariance(), self.widened());
         let others = self.seen().into_iter().filter(|&other| {
             let Some(place) = fit.place(self.layout.fixed + other).filter(|_| other != k) else { return false };
@@ -212,12 +282,19 @@ impl<'e> Alone<'e> {
             self.stands_out(k, self.own[k].parameter.mean, std)
         });
         let others: Vec<usize> = others.collect();
-        if others.is_empty() { Shown::Unseen } else { Shown::Confounded(others) }
+        if others.is_empty() { Visibility::Unseen } else { Visibility::Confounded(others) }
+    }
+
+    /// How many of the numbers move a reading.
+    pub fn moving(&self) -> usize {
+        (0..self.own.len())
+            .filter(|&k| self.is_at_bound(k) || self.solved.fit.place(self.layout.fixed + k).is_some())
+            .count()
     }
 
     /// Whether any of the numbers moves a reading.
     pub fn moves_any(&self) -> bool {
-        (0..self.own.len()).any(|k| self.solved.fit.place(self.layout.fixed + k).is_some())
+        self.moving() > 0
     }
 
     /// The rows that do not belong to the others; none where these are many.
@@ -260,6 +337,32 @@ fn likely(engine: &Engine<'_>, layout: &Layout, own: usize) -> Vec<f64> {
         if moves[column] > 0.0 { sd.max(read / moves[column]) } else { sd }
     };
     (0..own).map(of).collect()
+}
+
+/// Passes until numbers go with each other that no fit takes together.
+const PASSES: usize = 8;
+
+/// Weights by which no row says more of the numbers than the middle one does: a load that is far too large would
+/// decide them alone, and leave nothing of itself. From there on rows weigh by what is left of them.
+fn evened(engine: &Engine<'_>) -> Vec<f64> {
+    let readings = engine.observation.readings();
+    if engine.scene.what != What::Displacements {
+        return engine.noise.weights.clone();
+    }
+    let layout = Layout { candidates: Vec::new(), forms: Vec::new(), ..engine.layout() };
+    let columns = engine.linearise(&layout, &engine.point);
+    let of_row = |row: usize| -> f64 {
+        let of = |k: usize| match layout.parameters[k].size {
+            Size::Of(sd) => sd * sd * columns.view((row * readings.width, k), (readings.reported, 1)).norm_squared(),
+            _ => 0.0,
+        };
+        layout.always().map(of).sum()
+    };
+    let says: Vec<f64> = (0..readings.rows()).map(of_row).collect();
+    let mut loaded: Vec<f64> = says.iter().copied().filter(|says| *says > 0.0).collect();
+    loaded.sort_by(f64::total_cmp);
+    let Some(&middle) = loaded.get(loaded.len() / 2) else { return engine.noise.weights.clone() };
+    says.into_iter().map(|says| if says > middle { middle / says } else { 1.0 }).collect()
 }
 
 /// Steps to where the robot stands.

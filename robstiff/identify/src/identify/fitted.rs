@@ -3,13 +3,35 @@
 use nalgebra::DVector;
 use robstiff_robots::Description;
 
-use super::readable::is_readable;
-use super::{Error, Estimate, Identification, NoiseSource, Visibility};
+use super::{Error, Estimate, Identification, NoiseSource};
 use crate::campaign::Campaign;
 use crate::fit::case::Case;
-use crate::fit::estimate::{name, with_value};
+use crate::fit::estimate::name;
 use crate::fit::noise::known;
-use crate::fit::own::{Alone, Shown};
+use crate::fit::own::Alone;
+use crate::fit::readable::is_readable;
+
+/// How readings scatter about a fit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Scatter {
+    /// One sigma of what a row has to itself on each axis (m).
+    pub own: f64,
+    /// The same of rotations (rad), where they are read.
+    pub rotation: Option<f64>,
+    /// The variance of the unloaded reading that the rows of a visit share, over that of what a row has to itself.
+    pub shared: f64,
+    /// The part of its displacement by which a row scatters more.
+    pub growth: f64,
+}
+
+impl Scatter {
+    fn of(alone: &Alone<'_>) -> Self {
+        let noise = &alone.engine.noise;
+        let own = alone.solved.fit.variance.sqrt();
+        let turns = alone.engine.observation.readings().channels.contains(&1);
+        Self { own, rotation: turns.then(|| own / noise.scales[1]), shared: noise.shared, growth: own * noise.growth }
+    }
+}
 
 /// Puts together what a fit found; `poses` are those of the campaign.
 ///
@@ -21,14 +43,12 @@ pub fn identification(
     poses: usize,
 ) -> Result<Identification, Error> {
     let readings = case.observation.readings();
-    let seen = alone.seen();
-    let description =
-        seen.iter().fold(campaign.robot.clone(), |changed, &k| with_value(changed, &alone.own[k], alone.value(k)));
+    let description = alone.description();
     if !is_readable(&description) {
         return Err(Error::NoDescription);
     }
     let (noise, source) = match known(campaign, case, &alone.solved.left) {
-        Some(known) => (known.size, known.source.into()),
+        Some(known) => (known.size, known.source),
         None => (alone.solved.fit.variance.sqrt(), NoiseSource::Residuals),
     };
     let outliers = alone.outliers();
@@ -40,7 +60,7 @@ pub fn identification(
         rows: readings.rows(),
         poses,
         noise: Some((noise, source)),
-        covariance: None,
+        scatter: readings.differences.then(|| Scatter::of(alone)).filter(|_| poses > 0),
         left_out: outliers.iter().map(|&row| readings.lines[row]).collect(),
         rms_declared: alone.left(|k| alone.own[k].parameter.mean).map(|left| rms(&left)),
         rms: alone.left(|k| alone.value(k)).map(|left| rms(&left)),
@@ -57,12 +77,7 @@ pub fn estimate(robot: &Description, alone: &Alone<'_>, k: usize) -> Estimate {
         value: alone.value(k),
         std: alone.std(k),
         unit: own.parameter.unit,
-        visibility: match &alone.shown[k] {
-            Shown::Seen => Visibility::Seen,
-            Shown::Unseen => Visibility::Unseen,
-            Shown::Confounded(others) => Visibility::Confounded(others.clone()),
-        },
+        visibility: alone.shown[k].clone(),
         at_bound: declared > 0.0 && alone.is_at_bound(k),
-        confounded_with: Vec::new(),
     }
 }

@@ -157,13 +157,18 @@ fn one_digit(value: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::campaign::made::Plan;
-    use crate::identify::displacement::identify;
+    use crate::campaign::made::{Plan, displacements};
+    use crate::identify::{Error, Identification, displacement};
+
+    /// Without the refusal of what is in another unit.
+    fn identify(campaign: &Campaign) -> Result<Identification, Error> {
+        displacement::identify(campaign, displacements(campaign))
+    }
 
     /// What is told of a campaign whose forces are as many times what they were.
     fn told(times: f64, of_one_joint: f64) -> Option<String> {
         let mut campaign = Plan::new(1).run_with(|_, row| row.wrench = row.wrench.map(|load| times * load));
-        crate::identify::baseline::set_compliance(&mut campaign.robot.joints[1].compliance, of_one_joint);
+        crate::fit::estimate::set_compliance(&mut campaign.robot.joints[1].compliance, of_one_joint);
         off_by_one_factor(&campaign, &identify(&campaign).expect("joints are seen").estimates)
     }
 
@@ -227,7 +232,7 @@ mod tests {
     #[test]
     fn a_joint_that_is_hardly_seen_may_have_another_factor() {
         let mut campaign = Plan::new(1).run_with(|_, row| row.wrench = row.wrench.map(|load| 1e-3 * load));
-        crate::identify::baseline::set_compliance(&mut campaign.robot.joints[1].compliance, 1e-7);
+        crate::fit::estimate::set_compliance(&mut campaign.robot.joints[1].compliance, 1e-7);
         let mut estimates = identify(&campaign).expect("joints are seen").estimates;
         let last = estimates.iter_mut().rfind(|joint| joint.visibility == Visibility::Seen).expect("it is");
         last.value = 200.0 * last.declared;

@@ -6,12 +6,16 @@ use robstiff_robots::Description;
 
 use super::elastic::{Loaded, Sequence, Yielding, asides, gains, stacked, sum, yielding};
 use super::encoders::Encoders;
-use super::equilibrium::{beyond_linear, own_springs};
+use super::equilibrium::{Beyond, beyond_linear, own_springs};
 use super::{Observation, Readings, changed, step_of};
 use crate::campaign::{Displacements, Observation as Row};
 use crate::model::arm::Frame;
 use crate::model::weight::Weight;
 use crate::model::{Arm, At, Parameter, Rig, Stand, Term, World};
+
+/// A second order that is a larger share than this of the linear displacements is of numbers in another unit: no arm
+/// that machines comes to a tenth of it.
+const MOST: f64 = 0.1;
 
 /// A campaign of displacements.
 pub struct Displacement<'c> {
@@ -296,15 +300,31 @@ impl<'c> Displacement<'c> {
         read
     }
 
-    /// What large loads make of the arm's shape.
+    /// What large loads make of the arm's shape; nothing where by these springs it is [too much](MOST) in most rows.
     fn second_order(&self, world: &World, parameters: &[Parameter], values: &[f64]) -> DVector<f64> {
         let world = changed(world, parameters, values);
         let own = own_springs(parameters, values, self.kinds.len());
         let loaded = self.loaded(&world, &[], &[]);
-        stacked(self.rows(), self.readings.width, |row, numbers| {
+        let of_row = |row: usize| {
             let at = loaded.station[row];
             let rest = (&loaded.stands[at], self.data.rows[row].q.as_slice(), [].as_slice());
             let beyond = beyond_linear(&world, (&self.kinds, &own), rest, &loaded.wrenches[row], &loaded.twists[at]);
+            let linear =
+                own.iter().enumerate().map(|(joint, h)| loaded.twist(row, joint) * (h * loaded.torques[joint][row]));
+            let linear: Vector6<f64> = linear.sum();
+            let at_marker =
+                linear.fixed_rows::<3>(0) + linear.fixed_rows::<3>(3).cross(&world.rig.marker(&loaded.stands[at].tcp));
+            let length = beyond.moved.fixed_rows::<3>(0).norm();
+            (length <= MOST * at_marker.norm(), beyond)
+        };
+        let beyond: Vec<(bool, Beyond)> = (0..self.rows()).map(of_row).collect();
+        let is_known = 2 * beyond.iter().filter(|(is_small, _)| *is_small).count() > beyond.len();
+        stacked(self.rows(), self.readings.width, |row, numbers| {
+            let (_, beyond) = &beyond[row];
+            if !is_known || !beyond.moved.iter().all(|number| number.is_finite()) {
+                return;
+            }
+            let at = loaded.station[row];
             let declared = &self.declared[self.station[row]].tcp;
             self.put(&world.rig.seen(&beyond.moved, &loaded.stands[at].tcp, declared), numbers);
             let first = numbers.len() - self.encoders.len();

@@ -17,7 +17,7 @@
 
 use nalgebra::{DMatrix, DVector, Vector3};
 
-use super::tails::{Apart, median, weigh};
+use super::tails::{Apart, median, most_apart, weigh};
 use crate::observe::Readings;
 
 /// The discrepancies `kappa` that are weighed against each other; none has half the prior.
@@ -71,9 +71,17 @@ pub struct Noise {
     pub growth: f64,
     /// Whether it may grow.
     pub may_grow: bool,
-    /// Whether a row may be off by anything, and then has no pull on the others. Where effects of loads are searched it
-    /// may not: what is missing looks like such rows, and is no larger than what was read.
+    /// Whether a row may be off by anything, and then has no pull on the others. Under loads it may not: what is missing
+    /// looks like such rows, and is no larger than what was read.
     pub by_anything: bool,
+    /// Whether a row that does not belong to the others weighs by its own residual. Where candidates are searched it
+    /// does not: what is missing looks like such rows.
+    pub spares_others: bool,
+    /// What discrepancies are times [`DISCREPANCIES`]: 1 where candidates are searched, and as much as they ask for
+    /// where what is missing stays.
+    pub lack: f64,
+    /// How many numbers the residuals are free of; zero where candidates are searched.
+    pub fitted: f64,
     /// What brings each channel to the noise of the first.
     pub scales: Vec<f64>,
     /// Which rows of an encoder share a level, and its variance `tau` over that of one reading.
@@ -98,6 +106,9 @@ impl Noise {
             growth: 0.0,
             may_grow: readings.differences,
             by_anything: !readings.differences,
+            spares_others: false,
+            lack: 1.0,
+            fitted: 0.0,
             scales: (0..channels).map(|channel| if channel == 0 { 1.0 } else { lever }).collect(),
             level: (Level::Block, LEVELS[LEVELS.len() - 1]),
             apart: Apart::default(),
@@ -120,7 +131,8 @@ impl Noise {
             let tried = shares.iter().flat_map(|share| parts.iter().map(move |part| (*share, *part)));
             let judged = tried.map(|(share, part)| {
                 let price = if part > 0.0 { AGAINST_GROWTH } else { 0.0 }
-                    + if share > 0.0 && share < 1.0 { AGAINST_SOME } else { 0.0 };
+                    + if share > 0.0 && share < 1.0 { AGAINST_SOME } else { 0.0 }
+                    + self.hidden(readings, share);
                 let (likelihood, growth) = self.grown(readings, left, kappa, &rows, (share, part));
                 (likelihood - price, share, growth)
             });
@@ -130,6 +142,14 @@ impl Noise {
             self.learn_weights(readings, left, kappa, &rows);
         }
         self.learn_encoders(readings, left, kappa, &rows);
+    }
+
+    /// How much of the log-likelihood of an unloaded reading the numbers of a fit may have taken: each takes at most one of
+    /// those that visits share.
+    fn hidden(&self, readings: &Readings, share: f64) -> f64 {
+        let visits = readings.visit.iter().max().map_or(1, |last| last + 1);
+        let of_visit = readings.rows() as f64 / visits as f64;
+        0.5 * self.fitted * ((1.0 + of_visit) / (1.0 + share * of_visit)).ln()
     }
 
     /// The log-likelihood where noise has a part in proportion to the displacement, and how it grows
@@ -148,6 +168,10 @@ impl Noise {
             for _ in 0..GROWING {
                 growth = part / size;
                 (likelihood, size) = self.likelihood(readings, left, kappa, rows, (share, growth));
+            }
+            // Nothing grows by a part that is nearer to the one below, or to none.
+            if size * growth < 0.5 * part {
+                return (f64::NEG_INFINITY, 0.0);
             }
         }
         (likelihood, growth)
@@ -264,22 +288,47 @@ impl Noise {
     fn learn_weights(&mut self, readings: &Readings, left: &DVector<f64>, kappa: f64, rows: &[Vec<usize>]) {
         let size = self.likelihood(readings, left, kappa, rows, (self.shared, self.growth)).1;
         let mut squares = vec![0.0; readings.rows()];
+        // How far a row is off what the others of its pose say of it, and the variance of what they say, over that of
+        // one reading.
+        let mut beside = vec![(0.0, 0.0); readings.rows()];
         for rows in rows.iter().filter(|rows| !rows.is_empty()) {
             let covariance = self.covariance(readings, rows, kappa, (self.shared, self.growth));
             let Some(factor) = covariance.cholesky() else { continue };
             let solved = factor.solve(&self.reported(readings, left, rows));
+            let inverse = self.spares_others.then(|| factor.inverse());
             for (k, &row) in rows.iter().enumerate() {
-                let own = self.own(row, self.growth) / self.weights[row];
-                squares[row] = solved.row(k).norm_squared() * own * own / self.own(row, self.growth) / (size * size);
+                let own = self.own(row, self.growth);
+                let weighed = own / self.weights[row];
+                let solved = solved.row(k).norm_squared() / (size * size);
+                squares[row] = solved * weighed * weighed / own;
+                if let Some(inverse) = &inverse {
+                    let said = (1.0 / inverse[(k, k)] - weighed).max(0.0);
+                    beside[row] = (solved / inverse[(k, k)].powi(2), said);
+                    squares[row] = beside[row].0 / (own + said);
+                }
             }
         }
         let rows: Vec<usize> = rows.iter().flatten().copied().collect();
         let of_rows: Vec<f64> = rows.iter().map(|&row| squares[row]).collect();
-        let (weights, apart) = weigh(&of_rows, readings.reported as f64, self.by_anything);
+        let axes = readings.reported as f64;
+        let (weights, apart) = weigh(&of_rows, axes, self.by_anything);
         rows.iter().zip(weights).for_each(|(&row, weight)| self.weights[row] = weight);
         let mut beyond: Vec<usize> = apart.beyond.iter().map(|&k| rows[k]).collect();
+        if self.spares_others && is_loaded(readings) {
+            // What is missing grows with the load, too.
+            let most = |row: usize| (PROPORTIONAL[PROPORTIONAL.len() - 1] * self.sizes[row] / size).powi(2);
+            beyond.retain(|&row| beside[row].0 > most(row));
+        }
         beyond.sort_unstable();
         self.apart = Apart { beyond, ..apart };
+        // A row that does not belong to the others may be off by anything: by its own residual it is likeliest.
+        // Many of them are what the noise is like.
+        if self.spares_others && self.apart.rows().len() <= most_apart(rows.len()) {
+            for &row in self.apart.rows() {
+                let (own, (off, said)) = (self.own(row, self.growth), beside[row]);
+                self.weights[row] = self.weights[row].min(own / (off / axes - said).max(own));
+            }
+        }
     }
 
     /// The reported part of some rows, a column an axis.
@@ -293,7 +342,7 @@ impl Noise {
             let (a, b) = (rows[i], rows[j]);
             let own = if i == j { self.own(a, growth) / self.weights[a] } else { 0.0 };
             let visit = if readings.visit[a] == readings.visit[b] { share } else { 0.0 };
-            own + visit + kappa * readings.force[a].dot(&readings.force[b])
+            own + visit + self.lack * kappa * readings.force[a].dot(&readings.force[b])
         })
     }
 

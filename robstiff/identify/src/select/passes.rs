@@ -43,6 +43,9 @@ const NEAR: usize = 12;
 const SETTLING: usize = 12;
 const SETTLED: f64 = 0.05;
 
+/// By which factor a discrepancy is larger that is the largest of all: as one of them is than the next.
+const LACKS_MORE: f64 = 10.0;
+
 /// So many sets are compared at their own optimum, those that are at least so likely.
 const OWN: usize = 10;
 const UNLIKELY: f64 = 2e-3;
@@ -132,21 +135,56 @@ impl Engine<'_> {
     fn learn_noise(&mut self, solved: &Solved, kappa: usize) {
         let readings = self.observation.readings();
         let kappa = discrepancies(readings)[kappa];
+        if self.noise.spares_others {
+            self.noise.fitted = solved.fit.shares().iter().sum();
+        }
         self.noise.learn(readings, &solved.left, kappa, &self.training);
     }
 
     /// What is always in by itself at its optimum under the noise that it leaves; none of the compliances negative.
-    /// The noise follows from the fit, and the fit from the noise, until rows weigh as before.
+    /// A row that is far off its pose may be its own matter, or what is missing at the pose: the likelier of both.
     pub fn settle(&mut self, layout: &Layout) -> Option<Solved> {
-        let mut kappa = self.first_kappa();
+        let mut apart = self.clone();
+        let solved = self.settled(layout, false)?;
+        if !self.noise.spares_others || solved.kappa == 0 {
+            return Some(solved);
+        }
+        let rows = self.observation.readings().rows() as f64;
+        let score = |engine: &Self, solved: &Solved| solved.score - engine.noise.apart.rows().len() as f64 * rows.ln();
+        match apart.settled(layout, true) {
+            Some(other) if score(&apart, &other) > score(self, &solved) => {
+                *self = apart;
+                Some(other)
+            }
+            _ => Some(solved),
+        }
+    }
+
+    /// The same where rows are weighed at first as if nothing were missing, or by what seems to be. The noise follows
+    /// from the fit, and the fit from the noise, until rows weigh as before.
+    fn settled(&mut self, layout: &Layout, apart: bool) -> Option<Solved> {
+        let readings = self.observation.readings();
+        let last_kappa = discrepancies(readings).len() - 1;
+        let mut kappa = if apart { 0 } else { self.first_kappa() };
         let mut pass = 0;
         loop {
             let solved = self.fitting(Fitted::Written).solve_bounded(layout, &[], (&self.point, kappa), 2 * STEPS)?;
             let (before, last) = (self.noise.weights.clone(), kappa);
             self.adopt(&solved);
             kappa = solved.kappa;
+            if apart && pass == 0 {
+                kappa = 0;
+                self.learn_noise(&solved, kappa);
+            }
             pass += 1;
             let moved = before.iter().zip(&self.noise.weights).map(|(a, b)| (a / b).ln().abs()).fold(0.0, f64::max);
+            // What is missing may be more than any search would leave; a row a pose does not tell it from noise.
+            let is_most =
+                self.noise.spares_others && kappa > 0 && kappa == last_kappa && readings.blocks < readings.rows();
+            if is_most && pass < SETTLING {
+                self.noise.lack *= LACKS_MORE;
+                continue;
+            }
             if pass == SETTLING || (moved < SETTLED && kappa == last) {
                 return Some(solved);
             }

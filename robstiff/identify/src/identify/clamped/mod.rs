@@ -12,12 +12,12 @@ use robstiff_robots::effect::physics::PLAYS;
 
 use self::rounding::{loaded, of_rounding};
 use super::fitted::estimate;
-use super::readable::is_readable;
 use super::{Error, Estimate, Identification, Visibility};
 use crate::campaign::{Campaign, ClampedRow, Data};
 use crate::fit::case::Case;
 use crate::fit::estimate::{name, with_value};
 use crate::fit::own::Alone;
+use crate::fit::readable::is_readable;
 use crate::model::described::{Declared, declared};
 use robstiff::Effect;
 use robstiff::elements::{Torque, plays, turn};
@@ -49,7 +49,6 @@ pub fn identify(campaign: &Campaign, rows: &[ClampedRow]) -> Result<Identificati
         unit: number.parameter.unit,
         visibility: Visibility::Unseen,
         at_bound: false,
-        confounded_with: Vec::new(),
     };
     let mut found = Identification {
         description: robot.clone(),
@@ -58,7 +57,7 @@ pub fn identify(campaign: &Campaign, rows: &[ClampedRow]) -> Result<Identificati
         rows: rows.len(),
         poses: 0,
         noise: None,
-        covariance: None,
+        scatter: None,
         left_out: Vec::new(),
         rms_declared: None,
         rms: None,

@@ -24,16 +24,12 @@
 
 use std::vec::Vec;
 
-use nalgebra::DVector;
-
 use super::contrasts::{Level, contrasts};
 use super::encoders::EncoderNoise;
 use super::estimated::{Estimated, bartlett};
 use super::reml::count;
-use super::{Basis, Covariance, EQUAL_AXES, FEWEST, NESTED, Tails};
+use super::{Basis, Covariance, EQUAL_AXES, NESTED, Tails};
 use crate::campaign::{Frame, Noise};
-use crate::identify::normal::Fit;
-use crate::identify::problem::Problem;
 use crate::identify::samples::Samples;
 
 /// Outlying readings are looked for at most so many times over.
@@ -115,39 +111,6 @@ impl Covariance {
         covariance.encoders = EncoderNoise::estimate(samples, &of_pose);
         covariance.outliers.sort_by_key(|outlier| outlier.rows[0]);
         (covariance, Some(estimated))
-    }
-
-    /// The covariance for one more, last fit: the axes weighed by what a model
-    /// leaves of each, where that is all there is to go by. To be asked of a
-    /// final model, since what a model lacks would pass for the noise of the
-    /// axes it shows on. `problem` is whitened with this covariance.
-    #[must_use]
-    pub(crate) fn refined(&self, problem: &Problem, fit: &Fit) -> Self {
-        let mut refined = self.clone();
-        if matches!(self.basis, Basis::Contrasts(_)) {
-            return refined;
-        }
-        let axes = self.axes();
-        let residuals = problem.white_residuals(&fit.columns, &fit.coefficients);
-        let Some(inverse) = problem.total.inverse(&fit.columns) else { return refined };
-        let (mut sums, mut freedom) = (std::vec![0.0; axes], std::vec![0.0; axes]);
-        let of_tool = |i: &&usize| **i < self.visits.len() * axes;
-        for &i in problem.blocks.iter().flat_map(|block| &block.stacked).filter(of_tool) {
-            let x = DVector::from_fn(fit.columns.len(), |k, _| problem.white[(i, fit.columns[k])]);
-            sums[i % axes] += residuals[i] * residuals[i];
-            freedom[i % axes] += 1.0 - x.dot(&(&inverse * &x));
-        }
-        let least = freedom.iter().copied().fold(f64::INFINITY, f64::min);
-        if least < FEWEST as f64 || sums.contains(&0.0) {
-            return refined;
-        }
-        let reference = self.reference(0..3);
-        let variances: Vec<f64> =
-            (0..axes).map(|axis| sums[axis] / freedom[axis] * (self.own[axis] / reference).powi(2)).collect();
-        refined.basis = Basis::Model;
-        refined.freedom = least as usize;
-        refined.set_variances(&variances, least);
-        refined
     }
 
     /// Variances of single axes, or of all alike where they do not differ.
