@@ -109,15 +109,18 @@ pub fn compose<const N: usize>(
     let tool = order.tool.pose.expect("the tool is known");
     let work = order.work.pose.expect("the work frame is known");
     let to_work = postures.nominal.in_base(&work).inverse();
-    let target = |q: &SVector<f64, N>| match targets {
+    // Without words for a posture the joints alone say which it is; lines then go on in it.
+    let joints_by_angles = order.language == Language::Ur;
+    let target = |q: &SVector<f64, N>, motion: Motion| match targets {
         Targets::Joints => Target::Joints(postures.nominal.pendant(q)),
+        Targets::Poses if joints_by_angles && motion == Motion::Joint => Target::Joints(postures.nominal.pendant(q)),
         Targets::Poses => {
             let pose = to_work * postures.nominal.pose(q, &tool);
             Target::Pose(pose, postures.configuration(q, order.language))
         }
     };
-    // A TP program takes angles for lines, too.
-    let line_by_joints = targets == Targets::Joints && order.language != Language::Ls;
+    // TP programs and URScript take angles for lines, too.
+    let line_by_joints = targets == Targets::Joints && !matches!(order.language, Language::Ls | Language::Ur);
     let mut instructions = vec![Instruction::Tool(order.tool.clone()), Instruction::Work(order.work.clone())];
     let mut spindle = Spindle { on: None, tool: None, order };
     let mut without_feed = false;
@@ -137,7 +140,7 @@ pub fn compose<const N: usize>(
         let passes = is_line && points.get(i + 1).is_some_and(|next| !next.rapid && next.spindle == point.spindle);
         let zone = if passes { order.zone.clone() } else { Zone::Fine };
         let motion = if by_joints { Motion::Joint } else { Motion::Linear };
-        let to = Move { speed: Some(speed), zone, ..Move::to(motion, Position::from(target(&point.q))) };
+        let to = Move { speed: Some(speed), zone, ..Move::to(motion, Position::from(target(&point.q, motion))) };
         instructions.push(Instruction::Move(to));
     }
     spindle.stop(&mut instructions);
@@ -153,6 +156,7 @@ fn targets<const N: usize>(
     match (order.targets, unfit, order.language) {
         (Some(Targets::Poses), Some(why), Language::Ls) => Err(Uncomposable::NoPosture(why)),
         (Some(targets), _, _) => Ok((targets, None)),
+        (None, _, Language::Ur) => Ok((Targets::Poses, None)),
         (None, Some(why), _) => Ok((Targets::Joints, Some(format!("the posture of a pose cannot be said: {why}")))),
         (None, None, _) => Ok((Targets::Poses, None)),
     }
@@ -231,6 +235,7 @@ impl Spindle<'_> {
         match self.order.language {
             Language::Krl => format!("; {text}"),
             Language::Rapid => format!("! {text}"),
+            Language::Ur => format!("# {text}"),
             Language::Ls => format!("!{}", text.chars().take(LONGEST_REMARK).collect::<String>()),
         }
     }

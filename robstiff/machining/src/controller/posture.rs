@@ -101,6 +101,8 @@ impl<'n, const N: usize> Postures<'n, N> {
                 front: !below(ahead),
                 turns: [0, 3, 5].map(|i| turns(pendant[i])),
             },
+            // It has no words for postures.
+            Language::Ur => return None,
         })
     }
 
