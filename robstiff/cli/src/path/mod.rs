@@ -21,9 +21,10 @@ use robstiff_machining::path::{Jump, ToolPath};
 use robstiff_machining::program::angles::to_wxyz;
 use robstiff_robots::quantity::Dimension;
 use robstiff_robots::{Description, JointKind};
-use serde_json::{Value, json};
+use serde_json::json;
 
 use crate::failure::Failure;
+use crate::json::Lazy;
 use crate::output::{self, Files};
 use crate::text::{Table, cell, count, decimals};
 use crate::{input, json};
@@ -124,10 +125,11 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let mut document = document(robot, &solved);
     let axis = opened.tool_axis.filter(|_| !path.gives_joints()).map(|axis| input::axis_name(&axis));
     let mut page = page(robot, &file.display().to_string(), &solved, axis);
+    let mut job_json = None;
     if let Some(program) = &program {
         let commanded = solved.commanded();
         let sent = with_arm!(robot, |arm| program.compose(&arm, robot, path, &opened.place, &commanded))?;
-        document["program"] = sent.document();
+        document.push(("program", sent.document().into()));
         page += &sent.page();
         let facts = facts::Facts {
             robot,
@@ -141,10 +143,11 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         let [of_json, of_html] = sent.job;
         files.add(of_html, job::html(&facts.job(&solved)));
         sent.files.into_iter().for_each(|(path, text)| files.add(path, text));
-        files.add(of_json, json::document(&document));
+        job_json = Some(of_json);
     }
-    if let Some(path) = &arguments.json {
-        files.add(path, json::document(&document));
+    let document = Lazy::Fields(document);
+    for path in job_json.iter().chain(&arguments.json) {
+        files.add_document(path, &document)?;
     }
     let said = files.write()?;
     output::print(page + &said)
@@ -340,12 +343,10 @@ fn table(robot: &Description, solved: &Solved) -> String {
 }
 
 /// Everything in SI units.
-fn document(robot: &Description, solved: &Solved) -> Value {
-    let mut document = json!({
-        "robot": robot.name,
-        "closed_form": solved.closed_form,
-        "length_m": json::number(solved.points.last().map_or(0.0, |point| point.s - solved.points[0].s)),
-        "points": solved.points.iter().map(|point| json!({
+fn document<'s>(robot: &Description, solved: &'s Solved) -> Vec<(&'static str, Lazy<'s>)> {
+    let length = solved.points.last().map_or(0.0, |point| point.s - solved.points[0].s);
+    let point = |point: &Point| {
+        json!({
             "line": point.line,
             "q": json::numbers(point.q.iter().copied()),
             "position_m": json::numbers((0..3).map(|axis| point.pose[(axis, 3)])),
@@ -354,20 +355,27 @@ fn document(robot: &Description, solved: &Solved) -> Value {
             "s_m": json::number(point.s),
             "feed_m_per_s": point.feed.map(json::number),
             "rapid": point.rapid,
-        })).collect::<Value>(),
-        "jumps": solved.jumps.iter().map(|jump| json!({
+        })
+    };
+    let jump = |jump: &Jump| {
+        json!({
             "lines": jump.lines,
             "joint": jump.joint,
             "change": json::number(jump.change),
             "off_m": json::number(jump.off.distance),
             "off_rad": json::number(jump.off.angle),
-        })).collect::<Value>(),
-    });
+        })
+    };
+    let mut document = vec![
+        ("robot", json!(robot.name).into()),
+        ("closed_form", json!(solved.closed_form).into()),
+        ("length_m", json::number(length).into()),
+        ("points", Lazy::list(&solved.points, point)),
+        ("jumps", Lazy::list(&solved.jumps, jump)),
+    ];
     if let Some(cutting) = &solved.cutting {
-        document["deviation"] = deviation::document(cutting);
-        if let Some(chatter) = &cutting.chatter {
-            document["chatter"] = chatter.document();
-        }
+        document.push(("deviation", deviation::document(cutting)));
+        document.extend(cutting.chatter.as_ref().map(|chatter| ("chatter", chatter.document().into())));
     }
     document
 }
