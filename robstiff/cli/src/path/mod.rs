@@ -4,7 +4,7 @@
 mod chatter;
 pub mod cutting;
 pub mod deviation;
-mod doubts;
+pub mod doubts;
 mod facts;
 mod job;
 mod robot_program;
@@ -17,7 +17,7 @@ use robstiff::Robot;
 use robstiff::nalgebra::{Matrix4, Rotation3, SVector, Unit, UnitQuaternion, Vector3};
 use robstiff_machining::cell::{Cell, TooFast};
 use robstiff_machining::inverse::Inverse;
-use robstiff_machining::path::{Jump, ToolPath};
+use robstiff_machining::path::{Jump, Known, ToolPath};
 use robstiff_machining::program::angles::to_wxyz;
 use robstiff_robots::quantity::Dimension;
 use robstiff_robots::{Description, JointKind};
@@ -105,6 +105,9 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let out = arguments.out.as_ref().filter(|_| program.is_none());
     let mut files = Files::default();
     let request = arguments.cutting.read(&setup, opened.spindle, opened.place, &mut files)?;
+    if let (Some(request), Some(cell)) = (&request, setup.cell()) {
+        request.complain_of_tool(cell, path)?;
+    }
     let robot = &setup.robot;
     if request.is_some() {
         input::refuse_if_rigid(robot, "`robstiff path` with a cut or forces")?;
@@ -192,8 +195,19 @@ fn solve<const N: usize>(
 ) -> Result<Solved, Failure> {
     let start = start.map(SVector::<f64, N>::from_column_slice);
     let speeds = cell.map_or(&[][..], |cell| &cell.joint_speeds);
-    let solved = path.solve_at_speeds(robot, start.as_ref(), speeds)?;
-    let cutting = request.map(|request| request.compute(robot, path, &solved)).transpose()?;
+    let mut solved = path.solve_knowing(robot, start.as_ref(), &Known { speeds, ..Known::default() })?;
+    let cutting = match request {
+        None => None,
+        Some(request) => {
+            let engaged = request.engaged(path, &solved)?;
+            // What acts on a tool is the same at every turn about it, so that these can be chosen for the forces.
+            if path.is_planned(robot) {
+                let forces = request.forces(path, &solved, engaged.as_ref())?;
+                solved = path.solve_knowing(robot, start.as_ref(), &Known { speeds, forces: &forces })?;
+            }
+            Some(request.compute_engaged(robot, path, &solved, engaged)?)
+        }
+    };
     let too_fast = cell.map(|cell| cell.too_fast(&solved)).unwrap_or_default();
     let points = solved.points.into_iter().map(|point| Point {
         line: point.line,

@@ -5,7 +5,7 @@
 //! the commanded pose is moved by what is missing, the arm takes its posture there,
 //! yields there to the force of the path, and so on. Every round leaves
 //! about as large a part as the commanded pose moves relative to the arm's reach:
-//! three or four rounds are usual. In the end the tool must stay there although its
+//! two or three rounds are usual. In the end the tool must stay there although its
 //! force follows a displacement.
 //!
 //! What the correction is worth on an arm that is not as described tells

@@ -45,6 +45,8 @@ pub struct State<const N: usize> {
     pub side: u8,
     /// How far it is from the nearest limit and singular place: whole degrees, [`FAR_ENOUGH`] at most.
     pub margin: u8,
+    /// The square of how far (m) the force at the station pushes the tool off; 0 where none is known.
+    pub off: f64,
 }
 
 /// The points that are stations: one a step, both ends of a longer chord, the first and the last.
@@ -66,7 +68,7 @@ pub fn points(progress: &[f64]) -> Vec<usize> {
 
 /// The postures at a point of the path, each at one of the turns.
 pub fn states<const N: usize, R: Robot<N>>(
-    inverse: &Inverse<'_, R, N>,
+    (robot, inverse): (&R, &Inverse<'_, R, N>),
     path: &FreeTurns,
     point: usize,
     turns: impl Iterator<Item = f64>,
@@ -74,15 +76,18 @@ pub fn states<const N: usize, R: Robot<N>>(
 ) -> Vec<State<N>> {
     let mut states = Vec::new();
     for turn in turns {
-        inverse.postures(&path.target(point, turn), middle, |q| states.push(state(inverse, q, turn)));
+        inverse.postures(&path.target(point, turn), middle, |q| {
+            let off = path.force(point).map(|force| robot.deflection(&q, force).fixed_rows::<3>(0).norm_squared());
+            states.push(State { off: off.unwrap_or(0.0), ..state(inverse, q, turn) });
+        });
     }
     states.sort_by_key(|state| state.side);
     states
 }
 
-/// A posture at a turn.
+/// A posture at a turn, without a force.
 pub fn state<const N: usize, R: Robot<N>>(inverse: &Inverse<'_, R, N>, q: SVector<f64, N>, turn: f64) -> State<N> {
-    State { q, turn, side: inverse.side(&q), margin: margin(inverse, &q) }
+    State { q, turn, side: inverse.side(&q), margin: margin(inverse, &q), off: 0.0 }
 }
 
 /// Whether one posture leads to another without a change, the tool going by so much (rad) on the way: on the
