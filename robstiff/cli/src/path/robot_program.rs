@@ -188,6 +188,7 @@ impl ProgramRequest {
                 Failure::Explained(path.diagnostic(line, why.to_string(), help).to_string())
             }
             Uncomposable::NoPosture(_) => Failure::new(format_args!("{why}; say `--targets joints`")),
+            Uncomposable::Turntable => Failure::new(why),
         })?;
         let files = files(order.language, &composed.program).map_err(|wrong| {
             let shown: Vec<String> = wrong.iter().take(MOST_SHOWN).map(|one| format!("error: {one}")).collect();

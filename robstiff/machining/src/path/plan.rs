@@ -93,10 +93,11 @@ impl<const N: usize> Plan<N> {
     ) -> Option<Self> {
         let first = start.map_or(0.0, |(_, turn)| turn);
         let around = || (0..TURNS).map(|k| first + STEP * k as f64);
+        let places = inverse.carried_along(middle);
         let layer = |point: usize| {
             let states = match start {
                 Some((q, turn)) if point == 0 => vec![stations::state(inverse, *q, turn)],
-                _ => stations::states((robot, inverse), path, point, around(), middle),
+                _ => stations::states((robot, inverse), path, point, around(), &places),
             };
             Station { point, progress: path.progress()[point], states }
         };
@@ -114,7 +115,8 @@ impl<const N: usize> Plan<N> {
                     let turns = [-step, 0.0, step].map(|by| stop.state.turn + by).into_iter();
                     let mut states = vec![stop.state];
                     if start.is_none() || stop.point > 0 {
-                        states = stations::states((robot, inverse), path, stop.point, turns, middle);
+                        let places = between(inverse, middle, &stop.state.q, 0.5_f64.powi(halving));
+                        states = stations::states((robot, inverse), path, stop.point, turns, &places);
                         states.retain(|state| leads_to(inverse, &stop.state, state, 0.0));
                     }
                     if states.is_empty() {
@@ -152,6 +154,18 @@ impl<const N: usize> Plan<N> {
         });
         wanted.collect()
     }
+}
+
+/// Places of the axis that carries the arm beside that of a posture, a share of a step away; the middle alone where
+/// none does.
+fn between<const N: usize, R: Robot<N>>(
+    inverse: &Inverse<'_, R, N>,
+    middle: &SVector<f64, N>,
+    q: &SVector<f64, N>,
+    share: f64,
+) -> Vec<SVector<f64, N>> {
+    let Some(step) = inverse.carrier_step() else { return vec![*middle] };
+    [-1.0, 0.0, 1.0].map(|side| inverse.carried_to(middle, q[0] + side * share * step)).to_vec()
 }
 
 /// The best way through the stations: first with a margin as large as can be, up to enough, then with no more
@@ -205,7 +219,7 @@ fn way<const N: usize, R: Robot<N>>(
             let step = ahead.max(f64::MIN_POSITIVE);
             let reach = |index: usize, before: &Cost, step: f64| {
                 let change = inverse.change(&last.states[index].q, &state.q);
-                let effort = change.norm_squared() / step + ahead * state.off / usual;
+                let effort = inverse.as_angles(&change).norm_squared() / step + ahead * state.off / usual;
                 own(before, path.late([last.point, station.point], change.as_slice()), effort)
             };
             // A change of posture may come from anywhere.

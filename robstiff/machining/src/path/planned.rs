@@ -41,7 +41,8 @@ pub fn planned<const N: usize, R: Robot<N>>(
         _ => None,
     };
     let start = start.as_ref().map(|q| (q, path.turn_of(0, &robot.transform(q))));
-    let mut stations: BTreeSet<usize> = stations::points(path.progress()).into_iter().collect();
+    let mut stations: BTreeSet<usize> =
+        stations::points(path.progress(), inverse.carried_along(middle).len()).into_iter().collect();
     let mut round = 0;
     loop {
         round += 1;

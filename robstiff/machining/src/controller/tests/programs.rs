@@ -108,6 +108,46 @@ fn what_is_written_takes_the_arm_to_the_same_coordinates() {
     }
 }
 
+/// A rail below the arm is E1; the pose is that of the tool where the rail has taken the arm.
+#[test]
+fn a_rail_is_a_further_axis() {
+    let mut robot = kuka();
+    let rail = "name: Rail\nconvention: standard\nbase: {rpy: [-90 deg, 0, 0]}\njoints:\n  - {type: prismatic, alpha: -90 deg, limits: [-2 m, 2 m]}\n";
+    let rail = Description::parse("rail.yaml", rail).unwrap();
+    robot.joints.insert(0, rail.joints[0].clone());
+    robot.base = rail.base;
+    let controller = robot.controller.as_mut().unwrap();
+    controller.joints.insert(0, controller.joints[0].clone());
+    let nominal = Nominal::<7>::new(&robot, None).unwrap();
+    let postures = Postures::new(&nominal);
+    assert_eq!((postures.unfit(), postures.carriers()), (None, 1));
+    let arm = degrees([5.0, -70.0, 95.0, 10.0, 60.0, -15.0]);
+    let at = |e: f64| SVector::<f64, 7>::from_fn(|i, _| if i == 0 { e } else { arm[i - 1] });
+    let sent =
+        [0.0, 0.5, 1.25].map(|e| Sent { line: 1, q: at(e), rapid: e == 0.0, feed: None, spindle: None, tool: None });
+    for language in [Language::Krl, Language::Rapid] {
+        let composed = compose(&postures, &sent, &order(language, Isometry3::identity())).unwrap();
+        let document = parse(language, files(language, &composed.program).unwrap());
+        let moves: Vec<_> = document.moves().collect();
+        let external: Vec<_> = moves.iter().map(|to| to.position.external[0]).collect();
+        assert_eq!(external, [Some(0.0), Some(500.0), Some(1250.0)]);
+        let places = moves.iter().map(|to| match &to.position.target {
+            Target::Pose(pose, which) => (pose.translation.vector, *which),
+            Target::Joints(_) => panic!("{language:?}"),
+        });
+        let places: Vec<_> = places.collect();
+        // The rail is along y, and the posture stays.
+        assert!((places[2].0 - places[0].0 - Vector3::new(0.0, 1.25, 0.0)).norm() < 1e-6, "{places:?}");
+        assert_eq!(places[2].1, places[0].1);
+        assert_eq!(
+            places[0].1,
+            Postures::new(&Nominal::<6>::new(&kuka(), None).unwrap()).configuration(&arm, language)
+        );
+    }
+    let refused = compose(&postures, &sent, &order(Language::Ur, Isometry3::identity())).unwrap();
+    assert!(files(Language::Ur, &refused.program).unwrap_err()[0].why.contains("no further axes"));
+}
+
 #[test]
 fn what_fits_is_chosen_and_explained() {
     let robot = kuka();
