@@ -63,6 +63,15 @@ fn rigid(robot: &Description) -> Option<String> {
     rigid.then(|| format!("{} is rigid, nothing moves its tool: none of its joints has a `compliance`", robot.name))
 }
 
+/// Whether nothing of the robot of a cell gives way, so that the cut that the cell names has no effect; says so then.
+pub fn is_left_out(setup: &Setup, cut: &Path) -> bool {
+    let said = rigid(&setup.robot);
+    if let Some(said) = &said {
+        output::complain(format_args!("warning: {said}; {} is left out", cut.display()));
+    }
+    said.is_some()
+}
+
 /// Says so where nothing of a robot gives way.
 pub fn complain_if_rigid(robot: &Description) {
     if let Some(said) = rigid(robot) {

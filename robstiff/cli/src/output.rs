@@ -3,7 +3,7 @@
 
 use std::fmt;
 use std::fs::{self, File, OpenOptions};
-use std::io::{self, Write};
+use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
 use robstiff_identify::campaign::Campaign;
@@ -11,6 +11,7 @@ use robstiff_robots::Description;
 use robstiff_robots::text::shown;
 
 use crate::failure::Failure;
+use crate::json::Lazy;
 
 mod growing;
 mod progress;
@@ -45,7 +46,8 @@ pub fn complain(message: impl fmt::Display) {
 pub struct Files {
     files: Vec<(PathBuf, String)>,
     inputs: Vec<PathBuf>,
-    grown: Vec<Growing>,
+    /// Each with the number of the others that are named before it.
+    grown: Vec<(usize, Growing)>,
 }
 
 impl Files {
@@ -55,6 +57,16 @@ impl Files {
         if !self.files.contains(&file) {
             self.files.push(file);
         }
+    }
+
+    /// A file with a document that may be larger than the memory.
+    ///
+    /// # Errors
+    /// What cannot be written.
+    pub fn add_document(&mut self, path: &Path, document: &Lazy<'_>) -> Result<(), Failure> {
+        let mut out = BufWriter::new(self.grow(path)?);
+        let written = document.write(&mut out).and_then(|()| out.into_inner().map_err(io::IntoInnerError::into_error));
+        self.take(self.files.len(), written.map_err(|error| cannot_write(path, &error))?)
     }
 
     /// A file that was read and must not be overwritten with what was made of
@@ -136,8 +148,12 @@ impl Files {
     /// What cannot be written, two outputs of the same name, or an input among
     /// the outputs; no file is touched then.
     pub fn write(self) -> Result<String, Failure> {
-        let paths: Vec<&Path> =
-            self.grown.iter().map(Growing::path).chain(self.files.iter().map(|(path, _)| path.as_path())).collect();
+        let paths: Vec<&Path> = self
+            .grown
+            .iter()
+            .map(|(_, one)| one.path())
+            .chain(self.files.iter().map(|(path, _)| path.as_path()))
+            .collect();
         for (index, path) in paths.iter().enumerate() {
             self.refuse(path, &paths[..index])?;
         }
@@ -148,7 +164,7 @@ impl Files {
             // A draft that is dropped takes its file with it.
             drafts.push(Draft::new(path, text, &mut made).map_err(|error| cannot_write(path, &error))?);
         }
-        let grown = self.grown.iter().map(|Growing { draft, .. }| draft);
+        let grown = self.grown.iter().map(|(_, Growing { draft, .. })| draft);
         let drafts: Vec<(&Path, &Draft)> = paths.into_iter().zip(grown.chain(&drafts)).collect();
         // A device may be full: that shows before any file is in its place.
         let (streams, files): (Vec<_>, Vec<_>) = drafts.iter().partition(|(_, draft)| draft.is_stream());
@@ -160,7 +176,11 @@ impl Files {
             draft.publish().map_err(|error| cannot_write(path, &error))?;
         }
         drop(all_or_none);
-        Ok(drafts.iter().map(|(path, _)| format!("wrote {}\n", path.display())).collect())
+        let (grown, files) = drafts.split_at(self.grown.len());
+        let places = self.grown.iter().map(|(place, _)| *place).zip(grown).chain((1..).zip(files));
+        let mut named: Vec<(usize, &(&Path, &Draft))> = places.collect();
+        named.sort_by_key(|(place, _)| *place);
+        Ok(named.iter().map(|(_, (path, _))| format!("wrote {}\n", path.display())).collect())
     }
 }
 

@@ -162,6 +162,44 @@ fn a_rigid_arm_is_told_what_needs_its_compliances() {
     assert!(said.contains("`compliance: 3e-7 rad/Nm`") && said.contains("under `source:`"), "{said}");
 }
 
+/// What the cell has in it needs no compliances as long as nothing that depends on them is asked for.
+#[test]
+fn a_path_of_a_rigid_arm_leaves_the_cut_of_its_cell_out() {
+    let folder = folder("cell-rigid-cut");
+    let text = robstiff_robots::catalogue::find("kuka-kr270-r2700").unwrap();
+    let rows = text.lines().map(|row| match row.split_once(", compliance") {
+        Some((row, _)) => format!("{row}}}\n"),
+        None => format!("{row}\n"),
+    });
+    write(&folder, "arm.yaml", &rows.collect::<String>());
+    let cut = file("roughing.yaml");
+    let cell = write(&folder, "cell.yaml", &format!("robot: arm.yaml\nspindle: {{axis: z}}\ncut: {cut}\n"));
+    let pocket = file("pocket.csv");
+    let ran = run(&["path", &pocket, "--cell", &cell]);
+    assert!(ran.code == 0 && ran.err.contains("is rigid") && ran.err.contains("is left out"), "{}", ran.err);
+    let said = fail(1, &["path", &pocket, "--cell", &cell, "--compensate"]);
+    assert!(said.contains("`robstiff path` with a cut or forces needs them"), "{said}");
+    let said = fail(1, &["path", &pocket, "--cell", &cell, "--cut", &cut]);
+    assert!(said.contains("`robstiff path` with a cut or forces needs them"), "{said}");
+}
+
+#[test]
+fn another_tool_in_the_spindle_than_in_the_cut_is_told() {
+    let folder = folder("cell-diameter");
+    let of = |diameter: &str| {
+        let text = format!(
+            "robot: kuka-kr270-r2700\nspindle: {{axis: z}}\ntools: {{T1: {{length: 100 mm, diameter: {diameter}}}}}\ncut: {}\n",
+            file("roughing.yaml")
+        );
+        let ran = run(&["path", &file("pocket.csv"), "--cell", &write(&folder, "cell.yaml", &text)]);
+        assert_eq!(ran.code, 0, "{}", ran.err);
+        ran.err
+    };
+    let said = of("12 mm");
+    assert!(said.contains("the tool in the spindle is 12") && said.contains("roughing.yaml 20"), "{said}");
+    assert!(!of("20 mm").contains("the tool in the spindle"));
+}
+
 /// What a joint, a spindle or the stock does not allow is a warning, and the path is solved all the same.
 #[test]
 fn limits_of_the_cell_are_warned_of() {

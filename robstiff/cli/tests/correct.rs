@@ -51,6 +51,7 @@ fn correcting_before_or_after_writing_is_the_same() {
     for (language, name, more) in [
         ("krl", "pocket.src", vec![]),
         ("rapid", "pocket.mod", vec![]),
+        ("ur", "pocket.script", vec![]),
         ("ls", "POCKET.ls", vec!["--tool-data", "1 = description", "--work-data", "1 = 200 mm, 0, 100 mm, 0, 0, 0"]),
     ] {
         let folder = folder(&format!("correct-{language}"));

@@ -569,6 +569,8 @@ fn a_stock_says_what_is_met() {
         "pocket.csv",
         ["uz,feed [mm/min]\n1500,0,600,0,0,-1,3600", "uz,ae [mm]\n1500,0,600,0,0,-1,25"],
     );
-    let said = fail(1, &["path", "rv130hsc", &wide, "--tool-axis", "x", "--cut", &cut]);
-    assert!(said.contains("wider than its tool, 20 mm") && said.contains("pocket.csv:2:1"), "{said}");
+    for command in ["path", "online"] {
+        let said = fail(1, &[command, "rv130hsc", &wide, "--tool-axis", "x", "--cut", &cut]);
+        assert!(said.contains("wider than its tool, 20 mm") && said.contains("pocket.csv:2:1"), "{said}");
+    }
 }

@@ -58,7 +58,7 @@ pub fn gather(named: &[PathBuf]) -> Result<(Language, Vec<Source>), Failure> {
         let name = path.file_name().unwrap_or_default().to_string_lossy();
         let Some(of_file) = Language::of_file(&name) else {
             return Err(Failure::Usage(format!(
-                "{}: the language is known by the end of the name: .src and .dat (KRL), .mod (RAPID), .ls (FANUC)",
+                "{}: the language is known by the end of the name: .src and .dat (KRL), .mod (RAPID), .ls (FANUC), .script (UR)",
                 path.display()
             )));
         };

@@ -14,7 +14,6 @@ use robstiff_robots::quantity::Dimension;
 
 use crate::failure::Failure;
 use crate::input::{self, NamedFrame, positive};
-use crate::json;
 use crate::output::{self, Files};
 use crate::path::cutting::{Cutting, CuttingRequest, ForceArguments};
 
@@ -107,7 +106,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         files.add(path, source.with_mark(&file.text));
     }
     if let Some(path) = &arguments.json {
-        files.add(path, json::document(&page::document(&robot, &document, &corrected)));
+        files.add_document(path, &page::document(&robot, &document, &corrected))?;
     }
     let said = files.write()?;
     output::print(page::page(&robot, &document, &corrected) + &said)

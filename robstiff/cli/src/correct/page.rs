@@ -6,7 +6,7 @@ use robstiff_robots::Description;
 use serde_json::{Value, json};
 
 use super::{Corrected, Motion};
-use crate::json::{number, numbers};
+use crate::json::{Lazy, number, numbers};
 use crate::path::deviation;
 use crate::text::{Table, count, fine_micrometres};
 
@@ -74,29 +74,37 @@ fn more(all: usize) -> String {
 }
 
 /// Everything in SI units.
-pub fn document(robot: &Description, document: &Document, corrected: &Corrected) -> Value {
+pub fn document<'d>(robot: &Description, document: &'d Document, corrected: &'d Corrected) -> Lazy<'d> {
     let file = |file: usize| document.files()[file].name.clone();
-    let mut value = json!({
-        "robot": robot.name,
-        "language": document.language().word(),
-        "files": document.files().iter().map(|file| file.name.clone()).collect::<Vec<_>>(),
-        "motions": corrected.motions.iter().map(|motion| json!({
+    let motion = move |motion: &Motion| {
+        json!({
             "file": file(motion.file),
             "line": motion.line,
             "rapid": motion.rapid,
             "q_before": numbers(motion.before.iter().copied()),
             "q": numbers(motion.after.iter().copied()),
             "moved_m": motion.shift.map(number),
-        })).collect::<Value>(),
-        "not_corrected": kept(document).iter().map(|(of, line, text, why)| json!({
-            "file": file(*of), "line": line, "text": text, "why": why,
-        })).collect::<Value>(),
-        "other_posture": corrected.otherwise.iter().map(|(i, what)| json!({
-            "file": file(corrected.motions[*i].file), "line": corrected.motions[*i].line, "what": what,
-        })).collect::<Value>(),
+        })
+    };
+    let kept = kept(document).into_iter().map(|(of, line, text, why)| {
+        json!({
+            "file": file(of), "line": line, "text": text, "why": why,
+        })
     });
-    if let Some(cutting) = &corrected.cutting {
-        value["deviation"] = deviation::document(cutting);
-    }
-    value
+    let otherwise = corrected.otherwise.iter().map(|(i, what)| {
+        json!({
+            "file": file(corrected.motions[*i].file), "line": corrected.motions[*i].line, "what": what,
+        })
+    });
+    let files: Vec<_> = document.files().iter().map(|file| file.name.clone()).collect();
+    let mut fields = vec![
+        ("robot", json!(robot.name).into()),
+        ("language", json!(document.language().word()).into()),
+        ("files", json!(files).into()),
+        ("motions", Lazy::list(&corrected.motions, motion)),
+        ("not_corrected", kept.collect::<Value>().into()),
+        ("other_posture", otherwise.collect::<Value>().into()),
+    ];
+    fields.extend(corrected.cutting.as_ref().map(|cutting| ("deviation", deviation::document(cutting))));
+    Lazy::Fields(fields)
 }

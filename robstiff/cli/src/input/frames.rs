@@ -15,6 +15,8 @@ pub enum RobotLanguage {
     Rapid,
     /// FANUC TP programs as text
     Ls,
+    /// Universal Robots' URScript
+    Ur,
 }
 
 impl From<RobotLanguage> for Language {
@@ -23,6 +25,7 @@ impl From<RobotLanguage> for Language {
             RobotLanguage::Krl => Self::Krl,
             RobotLanguage::Rapid => Self::Rapid,
             RobotLanguage::Ls => Self::Ls,
+            RobotLanguage::Ur => Self::Ur,
         }
     }
 }
@@ -54,15 +57,20 @@ pub fn named_frame(text: &str) -> Result<NamedFrame, String> {
     Ok(NamedFrame { name, pose: Some(Isometry3::from_parts(Translation3::new(x?, y?, z?), turn)) })
 }
 
-/// A speed of joint motions: a share of the fastest in KRL and TP programs, one of the TCP in RAPID.
+/// A speed of joint motions: a share of the fastest in KRL and TP programs, one of the TCP in RAPID, one of the joint that
+/// moves most in URScript.
 pub fn joint_speed(text: &str, language: Language) -> Result<Speed, String> {
     match language {
         Language::Rapid => Ok(Speed::Tool(above_zero(with_unit(text, Dimension::Speed)?, Dimension::Speed)?)),
-        _ => share(text).map(Speed::Share),
+        Language::Ur => {
+            let of = Dimension::RotationalSpeed;
+            Ok(Speed::Joints(above_zero(with_unit(text, of)?, of)?))
+        }
+        Language::Krl | Language::Ls => share(text).map(Speed::Share),
     }
 }
 
-/// How near the tool passes: a distance in KRL and RAPID, a share in TP programs.
+/// How near the tool passes: a share in TP programs, a distance in the others.
 pub fn blend(text: &str, language: Language) -> Result<Zone, String> {
     match language {
         Language::Ls => share(text).map(Zone::Share),
@@ -97,6 +105,8 @@ mod tests {
     fn each_language_has_its_speeds() {
         assert_eq!(joint_speed("10 %", Language::Krl), Ok(Speed::Share(0.1)));
         assert_eq!(joint_speed("200 mm/s", Language::Rapid), Ok(Speed::Tool(0.2)));
+        assert_eq!(joint_speed("180 deg/s", Language::Ur), Ok(Speed::Joints(core::f64::consts::PI)));
+        assert!(joint_speed("10 %", Language::Ur).is_err());
         assert!(joint_speed("200 mm/s", Language::Ls).is_err() && joint_speed("120 %", Language::Krl).is_err());
         assert_eq!(blend("0.1 mm", Language::Krl), Ok(Zone::Within(1e-4)));
         assert_eq!(blend("50%", Language::Ls), Ok(Zone::Share(0.5)));

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use robstiff::Robot;
 use robstiff::nalgebra::{Matrix3, SVector, Unit, Vector3, Vector6};
-use robstiff_machining::deviation::{Deviation, ForceTable, Surface};
+use robstiff_machining::deviation::{Deviation, ForceTable, Operation, Surface};
 use robstiff_machining::milling::{CutFile, CutFrame, ForceFrame, Forces};
 use robstiff_machining::online::{HeldBack, Instant, LeftOfSine, Timeline, left_of_sine, simulate_along};
 use robstiff_machining::path::ToolPath;
@@ -15,7 +15,8 @@ use super::{Arguments, FREQUENCIES, Frequencies, Variant, bound};
 use crate::failure::Failure;
 use crate::input::{Asked, Force, Opened, Setup};
 use crate::output::{self, Files};
-use crate::path::cutting::{complain_of_feed, load_along};
+use crate::path::cutting::load_along;
+use crate::path::doubts::complain_of_feed;
 use crate::text::significant;
 use crate::{forces, input};
 
@@ -136,6 +137,8 @@ impl LoadRequest {
             })?;
             if let Source::Cut(file) = &source {
                 complain_of_feed(file, &by, &path, false);
+                let whole = Operation { forces: &file.forces, tools: &[], at_feeds: false, survey: None, angles: None };
+                whole.check(&path)?;
             }
             let axis = spindle.ok_or_else(|| setup.lacks_axis("--spindle-axis"))?;
             return Ok(Self::Path { path: Box::new(path), source, axis, feed: load.feed, name });

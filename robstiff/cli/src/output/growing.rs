@@ -45,10 +45,15 @@ impl Files {
     /// # Errors
     /// What cannot be written.
     pub fn grown(&mut self, growing: Growing) -> Result<(), Failure> {
+        self.take(0, growing)
+    }
+
+    /// The same, named behind so many of the files that do not grow.
+    pub(super) fn take(&mut self, place: usize, growing: Growing) -> Result<(), Failure> {
         if matches!(growing.draft, Draft::Beside { .. }) {
             growing.file.sync_all().map_err(|error| cannot_write(&growing.path, &error))?;
         }
-        self.grown.push(growing);
+        self.grown.push((place, growing));
         Ok(())
     }
 }

@@ -3,22 +3,22 @@
 use std::path::PathBuf;
 
 use robstiff::Robot;
-use robstiff::nalgebra::{Matrix4, Unit, Vector3};
+use robstiff::nalgebra::{Matrix4, Unit, Vector3, Vector6};
+use robstiff_machining::cell::Cell;
 use robstiff_machining::compensation::{CompensatedPoint, Keep, Sensitivity, compensate, sensitivity};
 use robstiff_machining::deviation::{
     Deviation, ForceTable, Load, Operation, Stretch, Surface, blame, load_at_feeds, load_of_cut, removal_rate,
 };
 use robstiff_machining::engagement::Stock;
-use robstiff_machining::milling::{Cut, CutFile, ForceFrame, Forces};
+use robstiff_machining::milling::{CutFile, ForceFrame, Forces};
 use robstiff_machining::path::{SolvedPath, ToolPath};
 
 use super::chatter::{Chatter, ChatterArguments, ChatterRequest};
-use super::doubts::{complain_of_size, lacks_wall};
+use super::doubts::{complain_of_diameter, complain_of_feed, complain_of_size, lacks_wall};
 use super::stock::{Engaged, StockArguments, StockRequest};
 use crate::failure::Failure;
 use crate::input::{Setup, tolerance, tool_axis};
 use crate::output::{self, Files};
-use crate::text::significant;
 use crate::{forces, input};
 
 /// Angles of a revolution that are looked at, besides those at which teeth begin and end to cut.
@@ -162,6 +162,21 @@ impl ForceArguments {
         self.spindle_axis
     }
 
+    /// The first option that needs a force.
+    fn asked(&self) -> Option<&'static str> {
+        let asked = [
+            ("--compensate", self.compensate),
+            ("--tolerance", self.tolerance.is_some()),
+            ("--spindle-axis", self.spindle_axis.is_some()),
+            ("--surface", self.surface.is_some()),
+            ("--against", self.against.is_some()),
+            ("--peak", self.peak),
+            ("--stock", self.stock.is_given()[0]),
+            ("--cut-of", self.stock.is_given()[1]),
+        ];
+        asked.into_iter().find(|(_, asked)| *asked).map(|(name, _)| name).or(self.chatter.asked())
+    }
+
     /// Reads what is named; `None` where there is no force.
     pub fn read(
         &self,
@@ -176,7 +191,11 @@ impl ForceArguments {
             Ok((file, path.display().to_string()))
         };
         let against = self.against.as_ref().map(&mut cut).transpose()?;
-        let (source, name) = match (&self.forces, setup.cut(self.cut.as_ref())) {
+        let asked = self.asked();
+        // The cut of a cell asks for nothing by itself.
+        let is_asked = self.cut.is_some() || self.forces.is_some() || asked.is_some();
+        let path = setup.cut(self.cut.as_ref()).filter(|path| is_asked || !input::is_left_out(setup, path));
+        let (source, name) = match (&self.forces, path) {
             (Some(path), _) => {
                 let table = ForceTable::read(path)?;
                 for warning in &table.warnings {
@@ -195,19 +214,8 @@ impl ForceArguments {
                 (Source::Cut(file), name)
             }
             (None, None) => {
-                let asked = [
-                    ("--compensate", self.compensate),
-                    ("--tolerance", self.tolerance.is_some()),
-                    ("--spindle-axis", self.spindle_axis.is_some()),
-                    ("--surface", self.surface.is_some()),
-                    ("--against", self.against.is_some()),
-                    ("--peak", self.peak),
-                    ("--stock", self.stock.is_given()[0]),
-                    ("--cut-of", self.stock.is_given()[1]),
-                    (self.chatter.asked().unwrap_or_default(), self.chatter.asked().is_some()),
-                ];
-                return match asked.iter().find(|(_, asked)| *asked) {
-                    Some((name, _)) => Err(Failure::Usage(format!(
+                return match asked {
+                    Some(name) => Err(Failure::Usage(format!(
                         "{name} needs a force: give `--cut CUT.yaml` or `--forces FORCES.csv`"
                     ))),
                     None => Ok(None),
@@ -240,6 +248,14 @@ impl CuttingRequest {
         self.stock.stock()
     }
 
+    /// Says so where the cell has another tool in the spindle than the cut.
+    pub fn complain_of_tool(&self, cell: &Cell, path: &ToolPath) -> Result<(), Failure> {
+        match &self.source {
+            Source::Cut(file) => complain_of_diameter(cell, path, &self.name, &file.forces),
+            Source::Table(..) => Ok(()),
+        }
+    }
+
     /// The same with the path corrected.
     pub fn compensating(self) -> Self {
         Self { compensate: true, ..self }
@@ -252,19 +268,54 @@ impl CuttingRequest {
         path: &ToolPath,
         solved: &SolvedPath<N>,
     ) -> Result<Cutting, Failure> {
-        let mut engaged = None;
-        let load = match &self.source {
-            Source::Table(table, frame) => table.load(solved, *frame, self.axis, self.surface)?,
-            Source::Cut(file) => {
-                if !self.stock.has_stock() {
-                    complain_of_feed(file, &self.name, path, self.peak);
-                }
-                self.stock.complain_of_tools(&self.name, path)?;
-                engaged = self.stock.survey(file, &self.name, solved, self.axis)?;
-                engaged.iter().for_each(|engaged| engaged.complain(path));
-                self.load(file, &self.name, path, solved, engaged.as_ref())?
-            }
-        };
+        let engaged = self.engaged(path, solved)?;
+        self.compute_engaged(robot, path, solved, engaged)
+    }
+
+    /// What is cut where, from a stock; complains of what does not fit.
+    pub fn engaged<const N: usize>(&self, path: &ToolPath, solved: &SolvedPath<N>) -> Result<Option<Engaged>, Failure> {
+        let Source::Cut(file) = &self.source else { return Ok(None) };
+        if !self.stock.has_stock() {
+            complain_of_feed(file, &self.name, path, self.peak);
+        }
+        self.stock.complain_of_tools(&self.name, path)?;
+        let engaged = self.stock.survey(file, &self.name, solved, self.axis)?;
+        engaged.iter().for_each(|engaged| engaged.complain(path));
+        Ok(engaged)
+    }
+
+    /// What acts on the tool at each point, in the base frame (N, Nm).
+    pub fn forces<const N: usize>(
+        &self,
+        path: &ToolPath,
+        solved: &SolvedPath<N>,
+        engaged: Option<&Engaged>,
+    ) -> Result<Vec<Vector6<f64>>, Failure> {
+        let load = self.load_of_source(path, solved, engaged)?;
+        Ok(load.contacts.iter().map(|contact| contact.wrench).collect())
+    }
+
+    fn load_of_source<const N: usize>(
+        &self,
+        path: &ToolPath,
+        solved: &SolvedPath<N>,
+        engaged: Option<&Engaged>,
+    ) -> Result<Load, Failure> {
+        match &self.source {
+            Source::Table(table, frame) => Ok(table.load(solved, *frame, self.axis, self.surface)?),
+            Source::Cut(file) => self.load(file, &self.name, path, solved, engaged),
+        }
+    }
+
+    /// What the forces do where it is known what is cut.
+    pub fn compute_engaged<const N: usize>(
+        &self,
+        robot: &impl Robot<N>,
+        path: &ToolPath,
+        solved: &SolvedPath<N>,
+        engaged: Option<Engaged>,
+    ) -> Result<Cutting, Failure> {
+        let load = self.load_of_source(path, solved, engaged.as_ref())?;
         has_direction(&load, &self.name, path)?;
         let deviation = Deviation::of(robot, solved, &load).map_err(Failure::new)?;
         let forces = match &self.source {
@@ -376,7 +427,10 @@ impl CuttingRequest {
                 None => Failure::new(summary),
             }
         })?;
-        let sensitivity = sensitivity(robot, solved, load, &compensated, WRONG).map_err(Failure::new)?;
+        let sensitivity = sensitivity(robot, solved, load, &compensated, WRONG).map_err(|why| {
+            let percent = WRONG * 1e2;
+            Failure::new(format_args!("if the arm were {percent} % softer or stiffer than described, {why}"))
+        })?;
         let joints = (1..=N).map(|joint| format!("joint {joint}"));
         let elements = joints.chain(robot.effects().iter().map(ToString::to_string)).collect();
         let rounds = compensated.rounds();
@@ -416,50 +470,6 @@ pub fn load_along<const N: usize>(
     } else {
         load_of_cut(forces, solved, axis, surface)
     }
-}
-
-/// Says so where the path moves at another feed than the cut, whose force it is; of a program that
-/// gives the feed, where its spindle turns with another speed. `peak`: the feed is that of the cut.
-pub fn complain_of_feed(file: &CutFile, name: &str, path: &ToolPath, peak: bool) {
-    let Forces::Model(cut) = &file.forces else { return };
-    if path.is_program && !peak {
-        return complain_of_speed(cut, name, path);
-    }
-    let Some(of_cut) = cut.feed_speed() else { return };
-    let differs = |feed: f64| (feed / of_cut - 1.0).abs() > 0.01;
-    let Some((line, feed)) =
-        path.points.iter().find_map(|point| point.feed.filter(|feed| differs(*feed)).map(|feed| (point.line, feed)))
-    else {
-        return;
-    };
-    let [of_path, of_cut] = [feed, of_cut].map(|feed| significant(feed * 6e4, 4));
-    output::complain(format_args!(
-        "warning: {}:{line}: the path's feed is {of_path} mm/min, the one that {name} computes its force for {of_cut} mm/min",
-        path.file
-    ));
-}
-
-/// Says so where nobody has the speed of the spindle, or a program turns it with another than the cut.
-fn complain_of_speed(cut: &Cut, name: &str, path: &ToolPath) {
-    let mut cutting = path.points.iter().filter(|point| !point.rapid);
-    let Some(of_cut) = cut.speed else {
-        if let Some(point) = cutting.find(|point| point.spindle.is_none_or(|speed| speed == 0.0)) {
-            output::complain(format_args!(
-                "warning: {}:{}: neither the program nor {name} has the speed of the spindle: the feed is that of {name}",
-                path.file, point.line
-            ));
-        }
-        return;
-    };
-    let speeds = cutting.filter_map(|point| Some((point.line, point.spindle.filter(|speed| *speed != 0.0)?.abs())));
-    let mut other = speeds.filter(|(_, speed)| (speed / of_cut - 1.0).abs() > 0.01);
-    let Some((line, speed)) = other.next() else { return };
-    let [speed, of_cut] = [speed, of_cut].map(|speed| significant(speed * 60.0 / core::f64::consts::TAU, 4));
-    output::complain(format_args!(
-        "warning: {}:{line}: the program's spindle turns with {speed} rpm, that of {name} with {of_cut} rpm; the \
-         program's counts",
-        path.file
-    ));
 }
 
 fn compared(name: &str, removal: Option<f64>, deviation: &Deviation) -> Compared {

@@ -5,9 +5,9 @@ use robstiff_machining::deviation::{DeviationPoint, Stretch, Summary};
 use robstiff_machining::path::lines;
 use serde_json::{Value, json};
 
-use super::cutting::{Corrected, Cutting, WRONG};
+use super::cutting::{Compared, Corrected, CorrectedPoint, Cutting, WRONG};
 use super::stock::Engaged;
-use crate::json::{number, numbers};
+use crate::json::{Lazy, number, numbers};
 use crate::text::{Table, cell, count, decimals, micrometres};
 
 /// Stretches and elements that a person is shown.
@@ -218,17 +218,9 @@ fn summary(of: Option<Summary>) -> Value {
 }
 
 /// Everything in SI units.
-pub fn document(cutting: &Cutting) -> Value {
-    json!({
-        "forces": cutting.name,
-        "surface": cutting.surface,
-        "engagement": cutting.engaged.as_ref().map(Engaged::document),
-        "points_with_force": cutting.deviation.in_cut().count(),
-        "distance": summary(cutting.deviation.distances()),
-        "error": summary(cutting.deviation.errors()),
-        "points": cutting.deviation.points.iter().map(point).collect::<Value>(),
-        "lines_without_direction": cutting.undirected,
-        "tolerance": cutting.tolerance.as_ref().map(|(tolerance, stretches)| json!({
+pub fn document(cutting: &Cutting) -> Lazy<'_> {
+    let tolerance = cutting.tolerance.as_ref().map(|(tolerance, stretches)| {
+        json!({
             "tolerance_m": number(*tolerance),
             // Where nothing is judged nobody can tell.
             "holds": cutting.deviation.errors().map(|_| stretches.iter().all(|stretch| stretch.holds)),
@@ -239,17 +231,32 @@ pub fn document(cutting: &Cutting) -> Value {
                 "holds": stretch.holds,
                 "worst_m": stretch.worst.map(number),
             })).collect::<Value>(),
-        })),
-        "shares": cutting.blame.iter().map(|(name, share)| json!({"element": name, "share": number(*share)})).collect::<Value>(),
-        "compared": cutting.compared.as_ref().map(|cuts| cuts.iter().map(|one| json!({
+        })
+    });
+    let share = |(name, share): &(String, f64)| json!({"element": name, "share": number(*share)});
+    let compared = |one: &Compared| {
+        json!({
             "cut": one.name,
             "removal_m3_per_s": one.removal.map(number),
             "force_n": number(one.force),
             "distance_m": one.distance.map(number),
             "error_m": one.error.map(number),
-        })).collect::<Value>()),
-        "corrected": cutting.corrected.as_ref().map(corrected),
-    })
+        })
+    };
+    Lazy::Fields(vec![
+        ("forces", json!(cutting.name).into()),
+        ("surface", json!(cutting.surface).into()),
+        ("engagement", cutting.engaged.as_ref().map_or(Lazy::Value(Value::Null), Engaged::document)),
+        ("points_with_force", json!(cutting.deviation.in_cut().count()).into()),
+        ("distance", summary(cutting.deviation.distances()).into()),
+        ("error", summary(cutting.deviation.errors()).into()),
+        ("points", Lazy::list(&cutting.deviation.points, point)),
+        ("lines_without_direction", json!(cutting.undirected).into()),
+        ("tolerance", json!(tolerance).into()),
+        ("shares", cutting.blame.iter().map(share).collect::<Value>().into()),
+        ("compared", json!(cutting.compared.as_ref().map(|cuts| cuts.iter().map(compared).collect::<Value>())).into()),
+        ("corrected", cutting.corrected.as_ref().map_or(Lazy::Value(Value::Null), corrected)),
+    ])
 }
 
 fn point(point: &DeviationPoint) -> Value {
@@ -263,14 +270,13 @@ fn point(point: &DeviationPoint) -> Value {
     })
 }
 
-fn corrected(corrected: &Corrected) -> Value {
+fn corrected(corrected: &Corrected) -> Lazy<'_> {
     let left = |[softer, stiffer]: &[LeftIfWrong; 2]| {
         let one = |left: &LeftIfWrong| json!({"rms": number(left.rms), "worst": number(left.worst)});
         json!({"softer": one(softer), "stiffer": one(stiffer)})
     };
-    json!({
-        "rounds": corrected.rounds,
-        "points": corrected.points.iter().map(|point| json!({
+    let point = |point: &CorrectedPoint| {
+        json!({
             "q": numbers(point.q.iter().copied()),
             "position_m": numbers((0..3).map(|axis| point.pose[(axis, 3)])),
             "quaternion_wxyz": numbers(super::quaternion(&point.pose)),
@@ -278,13 +284,18 @@ fn corrected(corrected: &Corrected) -> Value {
             "correction_m": numbers(point.correction),
             "remaining_m": number(point.remaining),
             "rounds": point.rounds,
+        })
+    };
+    let if_wrong = json!({
+        "by": WRONG,
+        "all": left(&corrected.sensitivity.all),
+        "each": corrected.elements.iter().zip(&corrected.sensitivity.each).map(|(element, both)| json!({
+            "element": element, "left": left(both),
         })).collect::<Value>(),
-        "left_if_wrong": {
-            "by": WRONG,
-            "all": left(&corrected.sensitivity.all),
-            "each": corrected.elements.iter().zip(&corrected.sensitivity.each).map(|(element, both)| json!({
-                "element": element, "left": left(both),
-            })).collect::<Value>(),
-        },
-    })
+    });
+    Lazy::Fields(vec![
+        ("rounds", json!(corrected.rounds).into()),
+        ("points", Lazy::list(&corrected.points, point)),
+        ("left_if_wrong", if_wrong.into()),
+    ])
 }

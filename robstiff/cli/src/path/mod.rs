@@ -4,7 +4,7 @@
 mod chatter;
 pub mod cutting;
 pub mod deviation;
-mod doubts;
+pub mod doubts;
 mod facts;
 mod job;
 mod robot_program;
@@ -17,13 +17,14 @@ use robstiff::Robot;
 use robstiff::nalgebra::{Matrix4, Rotation3, SVector, Unit, UnitQuaternion, Vector3};
 use robstiff_machining::cell::{Cell, TooFast};
 use robstiff_machining::inverse::Inverse;
-use robstiff_machining::path::{Jump, ToolPath};
+use robstiff_machining::path::{Jump, Known, ToolPath};
 use robstiff_machining::program::angles::to_wxyz;
 use robstiff_robots::quantity::Dimension;
 use robstiff_robots::{Description, JointKind};
-use serde_json::{Value, json};
+use serde_json::json;
 
 use crate::failure::Failure;
+use crate::json::Lazy;
 use crate::output::{self, Files};
 use crate::text::{Table, cell, count, decimals};
 use crate::{input, json};
@@ -104,6 +105,9 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let out = arguments.out.as_ref().filter(|_| program.is_none());
     let mut files = Files::default();
     let request = arguments.cutting.read(&setup, opened.spindle, opened.place, &mut files)?;
+    if let (Some(request), Some(cell)) = (&request, setup.cell()) {
+        request.complain_of_tool(cell, path)?;
+    }
     let robot = &setup.robot;
     if request.is_some() {
         input::refuse_if_rigid(robot, "`robstiff path` with a cut or forces")?;
@@ -124,10 +128,11 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let mut document = document(robot, &solved);
     let axis = opened.tool_axis.filter(|_| !path.gives_joints()).map(|axis| input::axis_name(&axis));
     let mut page = page(robot, &file.display().to_string(), &solved, axis);
+    let mut job_json = None;
     if let Some(program) = &program {
         let commanded = solved.commanded();
         let sent = with_arm!(robot, |arm| program.compose(&arm, robot, path, &opened.place, &commanded))?;
-        document["program"] = sent.document();
+        document.push(("program", sent.document().into()));
         page += &sent.page();
         let facts = facts::Facts {
             robot,
@@ -141,10 +146,11 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         let [of_json, of_html] = sent.job;
         files.add(of_html, job::html(&facts.job(&solved)));
         sent.files.into_iter().for_each(|(path, text)| files.add(path, text));
-        files.add(of_json, json::document(&document));
+        job_json = Some(of_json);
     }
-    if let Some(path) = &arguments.json {
-        files.add(path, json::document(&document));
+    let document = Lazy::Fields(document);
+    for path in job_json.iter().chain(&arguments.json) {
+        files.add_document(path, &document)?;
     }
     let said = files.write()?;
     output::print(page + &said)
@@ -189,8 +195,19 @@ fn solve<const N: usize>(
 ) -> Result<Solved, Failure> {
     let start = start.map(SVector::<f64, N>::from_column_slice);
     let speeds = cell.map_or(&[][..], |cell| &cell.joint_speeds);
-    let solved = path.solve_at_speeds(robot, start.as_ref(), speeds)?;
-    let cutting = request.map(|request| request.compute(robot, path, &solved)).transpose()?;
+    let mut solved = path.solve_knowing(robot, start.as_ref(), &Known { speeds, ..Known::default() })?;
+    let cutting = match request {
+        None => None,
+        Some(request) => {
+            let engaged = request.engaged(path, &solved)?;
+            // What acts on a tool is the same at every turn about it, so that these can be chosen for the forces.
+            if path.is_planned(robot) {
+                let forces = request.forces(path, &solved, engaged.as_ref())?;
+                solved = path.solve_knowing(robot, start.as_ref(), &Known { speeds, forces: &forces })?;
+            }
+            Some(request.compute_engaged(robot, path, &solved, engaged)?)
+        }
+    };
     let too_fast = cell.map(|cell| cell.too_fast(&solved)).unwrap_or_default();
     let points = solved.points.into_iter().map(|point| Point {
         line: point.line,
@@ -340,12 +357,10 @@ fn table(robot: &Description, solved: &Solved) -> String {
 }
 
 /// Everything in SI units.
-fn document(robot: &Description, solved: &Solved) -> Value {
-    let mut document = json!({
-        "robot": robot.name,
-        "closed_form": solved.closed_form,
-        "length_m": json::number(solved.points.last().map_or(0.0, |point| point.s - solved.points[0].s)),
-        "points": solved.points.iter().map(|point| json!({
+fn document<'s>(robot: &Description, solved: &'s Solved) -> Vec<(&'static str, Lazy<'s>)> {
+    let length = solved.points.last().map_or(0.0, |point| point.s - solved.points[0].s);
+    let point = |point: &Point| {
+        json!({
             "line": point.line,
             "q": json::numbers(point.q.iter().copied()),
             "position_m": json::numbers((0..3).map(|axis| point.pose[(axis, 3)])),
@@ -354,20 +369,27 @@ fn document(robot: &Description, solved: &Solved) -> Value {
             "s_m": json::number(point.s),
             "feed_m_per_s": point.feed.map(json::number),
             "rapid": point.rapid,
-        })).collect::<Value>(),
-        "jumps": solved.jumps.iter().map(|jump| json!({
+        })
+    };
+    let jump = |jump: &Jump| {
+        json!({
             "lines": jump.lines,
             "joint": jump.joint,
             "change": json::number(jump.change),
             "off_m": json::number(jump.off.distance),
             "off_rad": json::number(jump.off.angle),
-        })).collect::<Value>(),
-    });
+        })
+    };
+    let mut document = vec![
+        ("robot", json!(robot.name).into()),
+        ("closed_form", json!(solved.closed_form).into()),
+        ("length_m", json::number(length).into()),
+        ("points", Lazy::list(&solved.points, point)),
+        ("jumps", Lazy::list(&solved.jumps, jump)),
+    ];
     if let Some(cutting) = &solved.cutting {
-        document["deviation"] = deviation::document(cutting);
-        if let Some(chatter) = &cutting.chatter {
-            document["chatter"] = chatter.document();
-        }
+        document.push(("deviation", deviation::document(cutting)));
+        document.extend(cutting.chatter.as_ref().map(|chatter| ("chatter", chatter.document().into())));
     }
     document
 }

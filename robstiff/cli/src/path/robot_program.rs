@@ -18,7 +18,7 @@ use crate::failure::Failure;
 use crate::input::{self, RobotLanguage, positive};
 use crate::text::count;
 
-/// Names of programs that all three languages take, with what is added where a program is split.
+/// Names of programs that all languages take, with what is added where a program is split.
 const LONGEST_NAME: usize = 19;
 
 /// Problems that are shown.
@@ -43,13 +43,14 @@ pub struct RobotProgramArguments {
     /// The name or number under which the controller has the frame of the path
     #[arg(long, value_name = "NAME", requires = "program")]
     work_data: Option<String>,
-    /// How fast joint motions are: "10 %" of the fastest (KRL, LS), "200 mm/s" (RAPID); these where left out
+    /// How fast joint motions are: "10 %" of the fastest (KRL, LS), "200 mm/s" (RAPID), "30 deg/s" (UR); these
+    /// where left out
     #[arg(long, value_name = "SPEED", requires = "program")]
     rapid_speed: Option<String>,
     /// The feed where the path has none
     #[arg(long, value_name = "SPEED", requires = "program", value_parser = positive(Dimension::Speed))]
     feed: Option<f64>,
-    /// How near the tool passes the points of a cut: "0.1 mm" (KRL, RAPID), "50 %" (LS); it stops there where left out
+    /// How near the tool passes the points of a cut: "0.1 mm" (KRL, RAPID, UR), "50 %" (LS); it stops there where left out
     #[arg(long, value_name = "HOW", requires = "program")]
     blend: Option<String>,
     /// What starts the spindle, in the language; `{rpm}` stands for its speed
@@ -97,8 +98,11 @@ impl RobotProgramArguments {
         let (Some(language), Some(folder)) = (self.program.map(Language::from), out) else { return Ok(None) };
         let nominal = input::nominal(robot_file, robot)?;
         let usage = |option: &str, why: String| Failure::Usage(format!("{option}: {why}"));
-        let rapid =
-            self.rapid_speed.as_deref().unwrap_or(if language == Language::Rapid { "200 mm/s" } else { "10 %" });
+        let rapid = self.rapid_speed.as_deref().unwrap_or(match language {
+            Language::Krl | Language::Ls => "10 %",
+            Language::Rapid => "200 mm/s",
+            Language::Ur => "30 deg/s",
+        });
         let rapid = input::joint_speed(rapid, language).map_err(|why| usage("--rapid-speed", why))?;
         let zone = match &self.blend {
             Some(text) => input::blend(text, language).map_err(|why| usage("--blend", why))?,
@@ -107,7 +111,7 @@ impl RobotProgramArguments {
         let names = match language {
             // Without a number KRL has the frames in the program.
             Language::Krl => ["", ""],
-            Language::Rapid => ["tRobstiff", "wRobstiff"],
+            Language::Rapid | Language::Ur => ["tRobstiff", "wRobstiff"],
             Language::Ls => ["1", "1"],
         };
         let frame = |given: &Option<String>, name: &str| Frame {
@@ -136,6 +140,7 @@ impl ProgramRequest {
             Language::Krl => "src",
             Language::Rapid => "mod",
             Language::Ls => "ls",
+            Language::Ur => "script",
         };
         let name = match self.order.language {
             Language::Ls => self.order.name.to_ascii_uppercase(),
@@ -183,6 +188,7 @@ impl ProgramRequest {
                 Failure::Explained(path.diagnostic(line, why.to_string(), help).to_string())
             }
             Uncomposable::NoPosture(_) => Failure::new(format_args!("{why}; say `--targets joints`")),
+            Uncomposable::Turntable => Failure::new(why),
         })?;
         let files = files(order.language, &composed.program).map_err(|wrong| {
             let shown: Vec<String> = wrong.iter().take(MOST_SHOWN).map(|one| format!("error: {one}")).collect();

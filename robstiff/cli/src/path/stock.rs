@@ -14,7 +14,7 @@ use serde_json::{Value, json};
 use crate::failure::Failure;
 use crate::forces;
 use crate::input::{self, all_with_unit};
-use crate::json::{number, numbers};
+use crate::json::{Lazy, number, numbers};
 use crate::output::{Files, complain};
 use crate::text::{cell, count, decimals};
 
@@ -259,7 +259,7 @@ impl Engaged {
     }
 
     /// Everything in SI units.
-    pub fn document(&self) -> Value {
+    pub fn document(&self) -> Lazy<'_> {
         let met = |met: &Met| match met {
             Met::Air => "air",
             Met::Cut(_) => "cut",
@@ -267,33 +267,35 @@ impl Engaged {
             Met::Collision => "collision",
             Met::Tilted => "tilted",
         };
-        json!({
-            "removed_m3": number(self.survey.volume()),
-            "grid_m": number(self.survey.pitch),
-            "segments": self.survey.segments.iter().zip(&self.lines).map(|(segment, line)| {
-                let section = segment.width_and_depth();
-                let stretches = match &segment.met {
-                    Met::Cut(stretches) => &stretches[..],
-                    _ => &[],
-                };
-                json!({
-                    "line": line,
-                    "met": met(&segment.met),
-                    "removed_m3": number(segment.volume),
-                    "by_tip_m3": number(segment.by_tip),
-                    "width_m": section.map(|[width, _]| number(width)),
-                    "depth_m": section.map(|[_, depth]| number(depth)),
-                    "stretches": stretches.iter().map(|stretch| json!({
-                        "length_m": number(stretch.length),
-                        "arcs": stretch.bite.sectors.iter().map(|sector| json!({
-                            "angles_rad": numbers([sector.engagement.entry, sector.engagement.exit]),
-                            "above_tip_m": number(sector.above),
-                            "depth_m": number(sector.depth),
-                        })).collect::<Value>(),
+        let segment = move |i: usize| {
+            let segment = &self.survey.segments[i];
+            let section = segment.width_and_depth();
+            let stretches = match &segment.met {
+                Met::Cut(stretches) => &stretches[..],
+                _ => &[],
+            };
+            json!({
+                "line": self.lines[i],
+                "met": met(&segment.met),
+                "removed_m3": number(segment.volume),
+                "by_tip_m3": number(segment.by_tip),
+                "width_m": section.map(|[width, _]| number(width)),
+                "depth_m": section.map(|[_, depth]| number(depth)),
+                "stretches": stretches.iter().map(|stretch| json!({
+                    "length_m": number(stretch.length),
+                    "arcs": stretch.bite.sectors.iter().map(|sector| json!({
+                        "angles_rad": numbers([sector.engagement.entry, sector.engagement.exit]),
+                        "above_tip_m": number(sector.above),
+                        "depth_m": number(sector.depth),
                     })).collect::<Value>(),
-                })
-            }).collect::<Value>(),
-        })
+                })).collect::<Value>(),
+            })
+        };
+        Lazy::Fields(vec![
+            ("removed_m3", number(self.survey.volume()).into()),
+            ("grid_m", number(self.survey.pitch).into()),
+            ("segments", Lazy::List(self.survey.segments.len().min(self.lines.len()), Box::new(segment))),
+        ])
     }
 
     /// What is removed in a time (m^3/s), over the time of the segments that cut; `None` where the speed of one is not

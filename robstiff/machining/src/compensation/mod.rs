@@ -3,10 +3,10 @@
 //!
 //! Each point is corrected until the tool under load is where the path wants it:
 //! the commanded pose is moved by what is missing, the arm takes its posture there,
-//! yields there to the force that the corrected path sees (turned with the tool, and
-//! as large as the cut is deep where the tool now is), and so on. Every round leaves
+//! yields there to the force of the path, and so on. Every round leaves
 //! about as large a part as the commanded pose moves relative to the arm's reach:
-//! three or four rounds are usual.
+//! two or three rounds are usual. In the end the tool must stay there although its
+//! force follows a displacement.
 //!
 //! What the correction is worth on an arm that is not as described tells
 //! [`sensitivity()`].
@@ -18,7 +18,7 @@ mod tests;
 use nalgebra::{Matrix4, Rotation3, SVector, Unit, Vector3, Vector6};
 use robstiff_robots::Diagnostics;
 
-use crate::deviation::{Contact, Load, settle, turned};
+use crate::deviation::{Contact, Load, Yielding, settle, turned};
 use crate::inverse::{Inverse, Orientation, Remaining, Target, Unreached};
 use crate::path::follow::MOST_SHOWN;
 use crate::path::{PathPoint, SolvedPath, ToolPath, lines};
@@ -227,15 +227,31 @@ fn correct<const N: usize, R: Robot<N>>(
     let mut remaining = Remaining { distance: f64::NAN, angle: f64::NAN };
     for round in 0..=MOST_ROUNDS {
         let pose = robot.transform(&q);
-        let yields = |wrench: &Vector6<f64>| robot.deflection_with(&q, wrench, &mut state.clone());
-        let stand = settle(&pose, &point.pose, contact, yields).ok_or(Uncorrectable::PulledIn)?;
-        let actual = turned(&pose, &stand.deflection);
+        let arm = Yielding::of(robot, &q).as_described();
+        let yields = |wrench: &Vector6<f64>| arm.deflection(wrench, &mut state.clone());
+        // Where the tool is wanted it meets what the path says, and the force is that of the path: a force
+        // that follows the displacement has no part in the way there.
+        let mut actual = turned(&pose, &yields(&contact.wrench));
         remaining = wanted.remaining(&actual);
-        if remaining.distance < TOLERANCE && remaining.angle < TOLERANCE {
-            robot.deflection_with(&q, &stand.wrench, state);
-            let correction = (pose - point.pose).fixed_view::<3, 1>(0, 3).into_owned();
-            let wrench = stand.wrench;
-            return Ok(CompensatedPoint { line: point.line, q, pose, correction, wrench, remaining, rounds: round });
+        if is_there(&remaining) {
+            // Whether the tool then stays there, that part decides.
+            let stand = settle(&pose, &point.pose, contact, yields).ok_or(Uncorrectable::PulledIn)?;
+            actual = turned(&pose, &stand.deflection);
+            remaining = wanted.remaining(&actual);
+            if is_there(&remaining) {
+                arm.deflection(&stand.wrench, state);
+                let correction = (pose - point.pose).fixed_view::<3, 1>(0, 3).into_owned();
+                let wrench = stand.wrench;
+                return Ok(CompensatedPoint {
+                    line: point.line,
+                    q,
+                    pose,
+                    correction,
+                    wrench,
+                    remaining,
+                    rounds: round,
+                });
+            }
         }
         commanded = moved(&commanded, wanted.apart(&actual));
         // What the arm misses by less than the tool may be off is not out of its reach.
@@ -245,6 +261,10 @@ fn correct<const N: usize, R: Robot<N>>(
         };
     }
     Err(Uncorrectable::NotConverged { remaining })
+}
+
+fn is_there(remaining: &Remaining) -> bool {
+    remaining.distance < TOLERANCE && remaining.angle < TOLERANCE
 }
 
 /// A target moved by a translation (m) and a rotation vector (rad) in the base frame.

@@ -39,19 +39,34 @@ pub fn left<const N: usize>(
     load: &Load,
     compensated: &Compensated<N>,
 ) -> Result<LeftIfWrong, PulledIn> {
+    let all = left_of_each(robot, &[factors.to_vec()], path, load, compensated)?;
+    Ok(all[0])
+}
+
+/// The same of several arms.
+fn left_of_each<const N: usize>(
+    robot: &impl Robot<N>,
+    arms: &[Vec<f64>],
+    path: &SolvedPath<N>,
+    load: &Load,
+    compensated: &Compensated<N>,
+) -> Result<Vec<LeftIfWrong>, PulledIn> {
     assert_eq!(compensated.points.len(), path.points.len(), "a correction for every point of the path");
     let lengths = path.lengths();
     let distance = |stand: &Stand| stand.off.fixed_rows::<3>(0).norm();
-    let distances = |stands: Vec<Stand>| Summary::of(stands.iter().map(distance).zip(lengths.iter().copied()));
-    let uncorrected = displaced(robot, Some(factors), path.points.iter().map(|point| point.q), path, load)?;
-    let corrected = displaced(robot, Some(factors), compensated.points.iter().map(|point| point.q), path, load)?;
+    let distances = |distances: Vec<f64>| Summary::of(distances.into_iter().zip(lengths.iter().copied()));
+    let uncorrected = displaced(robot, arms, path.points.iter().map(|point| point.q), path, load, distance)?;
+    let corrected = displaced(robot, arms, compensated.points.iter().map(|point| point.q), path, load, distance)?;
     // An arm that is not pushed anywhere has nothing to correct.
     let part = |with: f64, without: f64| if without > 0.0 { with / without } else { 0.0 };
-    let both = distances(corrected).zip(distances(uncorrected));
-    Ok(both.map_or(LeftIfWrong { rms: 0.0, worst: 0.0 }, |(with, without)| LeftIfWrong {
-        rms: part(with.rms, without.rms),
-        worst: part(with.worst, without.worst),
-    }))
+    let left = |(corrected, uncorrected)| {
+        let both = distances(corrected).zip(distances(uncorrected));
+        both.map_or(LeftIfWrong { rms: 0.0, worst: 0.0 }, |(with, without)| LeftIfWrong {
+            rms: part(with.rms, without.rms),
+            worst: part(with.worst, without.worst),
+        })
+    };
+    Ok(corrected.into_iter().zip(uncorrected).map(left).collect())
 }
 
 /// What is left when the true arm's compliance is `by` larger and smaller than the
@@ -70,14 +85,14 @@ pub fn sensitivity<const N: usize>(
     by: f64,
 ) -> Result<Sensitivity, PulledIn> {
     let count = N + robot.effects().len();
-    let both = |wrong: &dyn Fn(usize) -> bool| -> Result<[LeftIfWrong; 2], PulledIn> {
-        let with = |factor: f64| {
-            let factors: Vec<f64> = (0..count).map(|k| if wrong(k) { factor } else { 1.0 }).collect();
-            left(robot, &factors, path, load, compensated)
-        };
-        Ok([with(1.0 + by)?, with(1.0 - by)?])
-    };
-    let all = both(&|_| true)?;
-    let each: Result<Vec<_>, _> = (0..count).map(|wrong| both(&|k| k == wrong)).collect();
-    Ok(Sensitivity { all, each: each? })
+    // All elements, and then each alone.
+    let wrong = core::iter::once(None).chain((0..count).map(Some));
+    let arms = wrong
+        .flat_map(|one| [1.0 + by, 1.0 - by].map(|factor| (one, factor)))
+        .map(|(one, factor)| (0..count).map(|k| if one.is_none_or(|one| one == k) { factor } else { 1.0 }).collect());
+    let arms: Vec<Vec<f64>> = arms.collect();
+    let left = left_of_each(robot, &arms, path, load, compensated)?;
+    let mut both = left.chunks_exact(2).map(|both| [both[0], both[1]]);
+    let all = both.next().expect("there is an arm");
+    Ok(Sensitivity { all, each: both.collect() })
 }

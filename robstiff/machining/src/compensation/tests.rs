@@ -195,6 +195,28 @@ fn one_point<const N: usize>(robot: &impl Robot<N>, q: SVector<f64, N>, wrench: 
     (SolvedPath { points: vec![point], jumps: Vec::new() }, load)
 }
 
+/// A cut that grows by a share of what the arm resists with: by less than all of it the tool stays on the path
+/// once it is there, whatever the way there would do; by more it leaves.
+#[test]
+fn a_force_that_grows_with_the_displacement_is_corrected_as_long_as_the_tool_stays() {
+    let robot = Generic::<6>::new(&described("kuka-kr270-r2700")).unwrap();
+    let q = SVector::from([10.0, -60.0, 90.0, 10.0, 60.0, 20.0].map(f64::to_radians));
+    let (path, mut load) = one_point(&robot, q, Vector6::new(300.0, -200.0, 400.0, 0.0, 0.0, 0.0));
+    let yields = |axis: usize| robot.deflection(&q, &Vector6::ith(axis, 1.0)).fixed_rows::<3>(0).into_owned();
+    let stiffness = nalgebra::Matrix3::from_columns(&[0, 1, 2].map(yields)).try_inverse().unwrap();
+    for share in [-5.0, 0.3, 0.7, 0.95] {
+        load.contacts[0].response = stiffness * share;
+        let found =
+            compensate(&robot, &path, &load, Keep::Pose).unwrap_or_else(|why| panic!("{share}: {why}")).points[0];
+        let actual = turned(&found.pose, &robot.deflection(&found.q, &load.contacts[0].wrench));
+        let off = Target::pose(&path.points[0].pose).remaining(&actual);
+        assert!(off.distance < 2e-9 && off.angle < 2e-9 && found.rounds <= 5, "{share}: {off:?}");
+    }
+    load.contacts[0].response = stiffness * 1.2;
+    let failed = compensate(&robot, &path, &load, Keep::Pose).unwrap_err();
+    assert_eq!(failed.points, [(2, Uncorrectable::PulledIn)]);
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(64))]
 

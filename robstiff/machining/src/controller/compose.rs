@@ -3,6 +3,7 @@
 use core::f64::consts::TAU;
 
 use nalgebra::SVector;
+use robstiff::{JointKind, Robot};
 
 use super::posture::Postures;
 use crate::program::{Frame, Instruction, Language, Motion, Move, Position, Program, Speed, Target, Zone};
@@ -79,6 +80,8 @@ pub enum Uncomposable {
     NoFeed(usize),
     /// The posture of poses cannot be said, and the language needs it.
     NoPosture(&'static str),
+    /// A turntable carries the arm, and the language has further axes in mm alone.
+    Turntable,
 }
 
 impl core::fmt::Display for Uncomposable {
@@ -86,6 +89,9 @@ impl core::fmt::Display for Uncomposable {
         match self {
             Self::NoFeed(_) => f.write_str("the point has no feed"),
             Self::NoPosture(why) => write!(f, "a pose of a TP program needs its CONFIG, and the arm has none: {why}"),
+            Self::Turntable => {
+                f.write_str("a turntable carries the arm, and a TP program is written with further axes in mm")
+            }
         }
     }
 }
@@ -109,15 +115,29 @@ pub fn compose<const N: usize>(
     let tool = order.tool.pose.expect("the tool is known");
     let work = order.work.pose.expect("the work frame is known");
     let to_work = postures.nominal.in_base(&work).inverse();
-    let target = |q: &SVector<f64, N>| match targets {
-        Targets::Joints => Target::Joints(postures.nominal.pendant(q)),
+    let carriers = postures.carriers();
+    let angles = |q: &SVector<f64, N>| postures.nominal.pendant(q).split_off(carriers);
+    let kinds = postures.nominal.arm.joint_kinds();
+    if order.language == Language::Ls && kinds[..carriers].contains(&JointKind::Revolute) {
+        return Err(Uncomposable::Turntable);
+    }
+    // As programs have them, in mm or degrees.
+    let external = |q: &SVector<f64, N>| -> Vec<Option<f64>> {
+        let of = postures.nominal.pendant(q).into_iter().zip(kinds).take(carriers);
+        of.map(|(at, kind)| Some(if kind == JointKind::Prismatic { at * 1e3 } else { at.to_degrees() })).collect()
+    };
+    // Without words for a posture the joints alone say which it is; lines then go on in it.
+    let joints_by_angles = order.language == Language::Ur;
+    let target = |q: &SVector<f64, N>, motion: Motion| match targets {
+        Targets::Joints => Target::Joints(angles(q)),
+        Targets::Poses if joints_by_angles && motion == Motion::Joint => Target::Joints(angles(q)),
         Targets::Poses => {
             let pose = to_work * postures.nominal.pose(q, &tool);
             Target::Pose(pose, postures.configuration(q, order.language))
         }
     };
-    // A TP program takes angles for lines, too.
-    let line_by_joints = targets == Targets::Joints && order.language != Language::Ls;
+    // TP programs and URScript take angles for lines, too.
+    let line_by_joints = targets == Targets::Joints && !matches!(order.language, Language::Ls | Language::Ur);
     let mut instructions = vec![Instruction::Tool(order.tool.clone()), Instruction::Work(order.work.clone())];
     let mut spindle = Spindle { on: None, tool: None, order };
     let mut without_feed = false;
@@ -137,7 +157,8 @@ pub fn compose<const N: usize>(
         let passes = is_line && points.get(i + 1).is_some_and(|next| !next.rapid && next.spindle == point.spindle);
         let zone = if passes { order.zone.clone() } else { Zone::Fine };
         let motion = if by_joints { Motion::Joint } else { Motion::Linear };
-        let to = Move { speed: Some(speed), zone, ..Move::to(motion, Position::from(target(&point.q))) };
+        let position = Position { target: target(&point.q, motion), external: external(&point.q) };
+        let to = Move { speed: Some(speed), zone, ..Move::to(motion, position) };
         instructions.push(Instruction::Move(to));
     }
     spindle.stop(&mut instructions);
@@ -153,6 +174,7 @@ fn targets<const N: usize>(
     match (order.targets, unfit, order.language) {
         (Some(Targets::Poses), Some(why), Language::Ls) => Err(Uncomposable::NoPosture(why)),
         (Some(targets), _, _) => Ok((targets, None)),
+        (None, _, Language::Ur) => Ok((Targets::Poses, None)),
         (None, Some(why), _) => Ok((Targets::Joints, Some(format!("the posture of a pose cannot be said: {why}")))),
         (None, None, _) => Ok((Targets::Poses, None)),
     }
@@ -231,6 +253,7 @@ impl Spindle<'_> {
         match self.order.language {
             Language::Krl => format!("; {text}"),
             Language::Rapid => format!("! {text}"),
+            Language::Ur => format!("# {text}"),
             Language::Ls => format!("!{}", text.chars().take(LONGEST_REMARK).collect::<String>()),
         }
     }

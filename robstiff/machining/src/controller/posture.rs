@@ -55,7 +55,7 @@ struct Posture {
     ahead: f64,
     /// The forearm bent forward (sine).
     bend: f64,
-    /// What the pendant shows (rad).
+    /// What the pendant shows of the arm (rad).
     pendant: Vec<f64>,
 }
 
@@ -68,12 +68,17 @@ impl<'n, const N: usize> Postures<'n, N> {
     /// Why the makers' words for postures do not fit the arm; `None` where they do.
     pub fn unfit(&self) -> Option<&'static str> {
         match N {
-            6 if self.inverse.has_closed_form() => None,
+            6 | 7 if self.inverse.has_closed_form() => None,
             6 => {
                 Some("its axes are not those of an arm with a spherical wrist, an axis and two parallel ones across it")
             }
-            _ => Some("it has not six axes"),
+            _ => Some("it has not six axes, and no such arm that a first one carries"),
         }
+    }
+
+    /// How many joints carry the arm: a rail or a turntable is one, and a further axis of the controller's.
+    pub fn carriers(&self) -> usize {
+        self.inverse.carriers()
     }
 
     /// Which posture joint coordinates are, in the words of a language's controller; `None` where
@@ -101,6 +106,8 @@ impl<'n, const N: usize> Postures<'n, N> {
                 front: !below(ahead),
                 turns: [0, 3, 5].map(|i| turns(pendant[i])),
             },
+            // It has no words for postures.
+            Language::Ur => return None,
         })
     }
 
@@ -138,13 +145,14 @@ impl<'n, const N: usize> Postures<'n, N> {
     /// they are of both.
     pub fn is(&self, q: &SVector<f64, N>, asked: &Configuration) -> bool {
         let Some(posture) = self.posture(q) else { return true };
-        posture.is_of(asked) && (0..N).all(|i| turns_by(asked, i, posture.pendant[i]))
+        posture.is_of(asked) && posture.pendant.iter().enumerate().all(|(i, angle)| turns_by(asked, i, *angle))
     }
 
     fn posture(&self, q: &SVector<f64, N>) -> Option<Posture> {
-        if N != 6 {
+        if !(6..=7).contains(&N) {
             return None;
         }
+        let carriers = self.carriers();
         let Sides { ahead, bend, first, shoulder } = self.inverse.sides(q)?;
         let base = self.nominal.arm.base();
         let origin = base.fixed_view::<3, 1>(0, 3).into_owned();
@@ -152,8 +160,8 @@ impl<'n, const N: usize> Postures<'n, N> {
         // with the base, along its z axis.
         let height = first.dot(&(shoulder - origin));
         let up = if height.abs() > ON_BOTH { height } else { first.dot(&base.fixed_view::<3, 1>(0, 2)) };
-        let forward = if self.nominal.controller.joints[1].reversed { -1.0 } else { 1.0 };
-        let pendant = self.nominal.pendant(q);
+        let forward = if self.nominal.controller.joints[carriers + 1].reversed { -1.0 } else { 1.0 };
+        let pendant = self.nominal.pendant(q).split_off(carriers);
         Some(Posture { ahead: forward * up.signum() * ahead, bend: forward * bend, pendant })
     }
 
@@ -175,8 +183,9 @@ impl<'n, const N: usize> Postures<'n, N> {
             return None;
         }
         let (kinds, limits) = (self.nominal.arm.joint_kinds(), self.nominal.arm.limits());
+        let carriers = self.carriers();
         let mut turned = *q;
-        for i in 0..N {
+        for i in carriers..N {
             let within = |value: f64| {
                 limits[i].is_none_or(|[low, high]| (low - ON_THE_LIMIT..=high + ON_THE_LIMIT).contains(&value))
             };
@@ -185,7 +194,7 @@ impl<'n, const N: usize> Postures<'n, N> {
             let fits = values.filter(|value| {
                 let mut with = turned;
                 with[i] = *value;
-                within(*value) && turns_by(asked, i, self.nominal.pendant(&with)[i])
+                within(*value) && turns_by(asked, i - carriers, self.nominal.pendant(&with)[i])
             });
             turned[i] = fits.min_by(|one, other| (one - near[i]).abs().total_cmp(&(other - near[i]).abs()))?;
         }

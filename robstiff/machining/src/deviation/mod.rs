@@ -44,11 +44,12 @@ pub(crate) mod tests;
 use nalgebra::{Vector3, Vector6};
 
 use crate::path::SolvedPath;
-use robstiff::Robot;
+use robstiff::{Robot, State};
 
 pub use blame::blame;
 pub use contact::{Contact, Load, Revolutions, Surface};
 pub use load::{Operation, load_at_feeds, load_of_cut};
+pub(crate) use parts::Yielding;
 pub use parts::parts;
 pub use removal::{removal_rate, width};
 pub use settle::PulledIn;
@@ -116,7 +117,9 @@ impl Deviation {
     /// # Panics
     /// If the load has another number of points than the path.
     pub fn of<const N: usize>(robot: &impl Robot<N>, path: &SolvedPath<N>, load: &Load) -> Result<Self, PulledIn> {
-        let stands = displaced(robot, None, path.points.iter().map(|point| point.q), path, load)?;
+        let arm = vec![1.0; N + robot.effects().len()];
+        let stands = displaced(robot, &[arm], path.points.iter().map(|point| point.q), path, load, |stand| *stand)?;
+        let stands = stands.into_iter().flatten();
         let each = path.points.iter().zip(path.lengths()).zip(&load.contacts).zip(stands).enumerate();
         let points = each.map(|(i, (((point, length), contact), stand))| {
             let shift = stand.off.fixed_rows::<3>(0).into_owned();
@@ -148,7 +151,11 @@ fn peak<const N: usize>(
 ) -> Option<f64> {
     // The forces of a revolution have no direction where their mean has none.
     let into = contact.into.filter(|_| contact.wrench != Vector6::zeros())?;
-    let under = |wrench: &Vector6<f64>| into.dot(&robot.deflection(q, wrench).fixed_rows::<3>(0));
+    if revolution.is_empty() {
+        return None;
+    }
+    let arm = Yielding::of(robot, q).as_described();
+    let under = |wrench: &Vector6<f64>| into.dot(&arm.deflection(wrench, &mut State::<N>::new()).fixed_rows::<3>(0));
     let under_mean = under(&contact.wrench);
     let error = |force: &Vector3<f64>| {
         let force = contact.turn * force;

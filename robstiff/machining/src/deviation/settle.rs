@@ -3,7 +3,7 @@
 use nalgebra::{Matrix3, Matrix4, Rotation3, SVector, Vector3, Vector6};
 
 use super::contact::{Contact, Load};
-use super::parts::parts;
+use super::parts::Yielding;
 use crate::inverse::Target;
 use crate::path::{SolvedPath, lines};
 use robstiff::{Robot, State};
@@ -128,36 +128,39 @@ fn compliance(yields: &impl Fn(&Vector6<f64>) -> Vector6<f64>, wrench: &Vector6<
     Matrix3::from_columns(&[0, 1, 2].map(column))
 }
 
-/// The arm at every point of a path under load, commanded to other postures or
-/// the path's own. `factors` make each joint and effect of the robot (in the order
-/// of [`parts`]) that much softer.
-pub(crate) fn displaced<const N: usize>(
+/// What is of interest where the tool comes to rest, at every point of a path under load, the arm commanded
+/// to other postures or the path's own: for each of the arms whose joints and then effects (in the order of
+/// [`parts`](super::parts())) are softer by factors. Joints with hysteresis follow the loads in the order of the path.
+pub(crate) fn displaced<const N: usize, T>(
     robot: &impl Robot<N>,
-    factors: Option<&[f64]>,
+    arms: &[Vec<f64>],
     commanded: impl Iterator<Item = SVector<f64, N>>,
     path: &SolvedPath<N>,
     load: &Load,
-) -> Result<Vec<Stand>, PulledIn> {
+    of: impl Fn(&Stand) -> T,
+) -> Result<Vec<Vec<T>>, PulledIn> {
     assert_eq!(load.contacts.len(), path.points.len(), "a contact for every point of the path");
-    let mut before = State::new();
-    let (mut stands, mut lines) = (Vec::with_capacity(path.points.len()), Vec::new());
+    let mut before = vec![State::<N>::new(); arms.len()];
+    let mut found: Vec<Vec<T>> = arms.iter().map(|_| Vec::with_capacity(path.points.len())).collect();
+    let mut lines = Vec::new();
     for ((q, point), contact) in commanded.zip(&path.points).zip(&load.contacts) {
-        let yields = |wrench: &Vector6<f64>, state: &mut State<N>| match factors {
-            None => robot.deflection_with(&q, wrench, state),
-            Some(factors) => {
-                parts(robot, &q, wrench, state).zip(factors).map(|((_, part), factor)| part * *factor).sum()
+        let (pose, yielding) = (robot.transform(&q), Yielding::of(robot, &q));
+        let mut settles = true;
+        for ((factors, state), found) in arms.iter().zip(&mut before).zip(&mut found) {
+            let arm = yielding.softened(factors);
+            match settle(&pose, &point.pose, contact, |wrench| arm.deflection(wrench, &mut state.clone())) {
+                Some(stand) => {
+                    arm.deflection(&stand.wrench, state);
+                    found.push(of(&stand));
+                }
+                None => settles = false,
             }
-        };
-        let settled = settle(&robot.transform(&q), &point.pose, contact, |wrench| yields(wrench, &mut before.clone()));
-        match settled {
-            Some(stand) => {
-                yields(&stand.wrench, &mut before);
-                stands.push(stand);
-            }
-            None => lines.push(point.line),
+        }
+        if !settles {
+            lines.push(point.line);
         }
     }
-    if lines.is_empty() { Ok(stands) } else { Err(PulledIn { lines }) }
+    if lines.is_empty() { Ok(found) } else { Err(PulledIn { lines }) }
 }
 
 /// A pose of the TCP moved by a displacement in the base frame (m, rad).

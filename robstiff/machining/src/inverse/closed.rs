@@ -6,13 +6,55 @@ use core::f64::consts::{PI, TAU};
 use nalgebra::SVector;
 use robstiff_robots::description::ON_THE_LIMIT;
 
+use super::carried::Closed;
 use super::{Inverse, Orientation, Target, check};
 use robstiff::{JointKind, Robot};
 
+/// At so many places along its range the axis is tried that carries an arm.
+const PLACES: usize = 9;
+
 impl<R: Robot<N>, const N: usize> Inverse<'_, R, N> {
-    /// Whether six axes with a closed form take every turn about a tool's axis.
+    /// Whether six axes with a closed form, or seven of which the first carries such, take every turn about a
+    /// tool's axis.
     pub(crate) fn takes_every_turn(&self) -> bool {
-        N == 6 && self.wrist.is_some()
+        N >= 6 && self.wrist.is_some()
+    }
+
+    /// How many joints carry the arm that has the closed form.
+    pub(crate) fn carriers(&self) -> usize {
+        usize::from(self.wrist.as_ref().is_some_and(Closed::is_carried))
+    }
+
+    /// How far apart (rad or m) the places are at which a carried arm is tried; `None` where nothing carries it, or
+    /// a rail without ends.
+    pub(crate) fn carrier_step(&self) -> Option<f64> {
+        let [low, high] = self.limits[0];
+        let range = if self.is_endless(0) { TAU } else { high - low };
+        (self.carriers() > 0 && range.is_finite() && range > 0.0).then(|| range / (PLACES - 1) as f64)
+    }
+
+    /// Coordinates with the axis that carries the arm all along its range, the others as they are given; those alone
+    /// where nothing carries it.
+    pub(crate) fn carried_along(&self, q: &SVector<f64, N>) -> Vec<SVector<f64, N>> {
+        let Some(step) = self.carrier_step() else { return vec![*q] };
+        let from = if self.is_endless(0) { -PI } else { self.limits[0][0] };
+        (0..PLACES).map(|k| self.carried_to(q, from + step * k as f64)).collect()
+    }
+
+    /// Coordinates with the axis that carries the arm at another one, within its limits.
+    pub(crate) fn carried_to(&self, q: &SVector<f64, N>, to: f64) -> SVector<f64, N> {
+        let mut carried = *q;
+        carried[0] = to.clamp(self.limits[0][0], self.limits[0][1]);
+        carried
+    }
+
+    /// Changes of coordinates as angles (rad): a slide counts by the [`scale`](Self::scale).
+    pub(crate) fn as_angles(&self, change: &SVector<f64, N>) -> SVector<f64, N> {
+        SVector::from_fn(|i, _| change[i] / self.scale_of(i))
+    }
+
+    fn scale_of(&self, joint: usize) -> f64 {
+        if self.kinds[joint] == JointKind::Revolute { 1.0 } else { self.scale() }
     }
 
     /// The length (m) by which positions count as angles: a tool that moves by it moves the joints by
@@ -27,7 +69,7 @@ impl<R: Robot<N>, const N: usize> Inverse<'_, R, N> {
     pub(crate) fn postures(&self, target: &Target, seed: &SVector<f64, N>, mut found: impl FnMut(SVector<f64, N>)) {
         self.closed(target, seed, |q| {
             if self.is_near(&target.remaining(&self.robot.transform(&q))) {
-                self.in_every_turn(q, 0, &mut found);
+                self.in_every_turn(q, self.carriers(), &mut found);
             }
         });
     }
@@ -66,9 +108,9 @@ impl<R: Robot<N>, const N: usize> Inverse<'_, R, N> {
         if self.is_endless(joint) { change - TAU * (change / TAU).round() } else { change }
     }
 
-    /// How far each joint is from the nearer of its limits (rad or m); infinitely where it has none.
+    /// How far each joint is from the nearer of its limits, as an angle (rad); infinitely where it has none.
     pub(crate) fn to_limits(&self, q: &SVector<f64, N>) -> [f64; N] {
-        core::array::from_fn(|i| (q[i] - self.limits[i][0]).min(self.limits[i][1] - q[i]))
+        core::array::from_fn(|i| (q[i] - self.limits[i][0]).min(self.limits[i][1] - q[i]) / self.scale_of(i))
     }
 
     /// The solution of the closed form for a whole pose that is nearest to a seed; `None` where there is

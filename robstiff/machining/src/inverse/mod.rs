@@ -9,6 +9,7 @@
 //! solutions are those of the robot as described.
 
 mod base;
+mod carried;
 mod closed;
 mod descent;
 mod screws;
@@ -26,13 +27,13 @@ use core::f64::consts::TAU;
 use nalgebra::SVector;
 use robstiff_robots::description::ON_THE_LIMIT;
 
+use carried::Closed;
 use descent::{Bounds, End, descend};
 use robstiff::{JointKind, Robot};
 use starts::Starts;
 pub use target::{Orientation, Remaining, Target};
 pub use unreached::Unreached;
 pub(crate) use wrist::Sides;
-use wrist::Wrist;
 
 /// A solution is within this of its target (m, rad).
 pub const TOLERANCE: f64 = 1e-10;
@@ -63,7 +64,7 @@ pub struct Inverse<'r, R, const N: usize> {
     limits: Bounds<N>,
     /// The size of the arm (m).
     reach: f64,
-    wrist: Option<Wrist<N>>,
+    wrist: Option<Closed<N>>,
     starts: Starts<N>,
 }
 
@@ -73,11 +74,12 @@ impl<'r, R: Robot<N>, const N: usize> Inverse<'r, R, N> {
         let limits = robot.limits().map(|limits| limits.unwrap_or([f64::NEG_INFINITY, f64::INFINITY]));
         let reach = starts::reach(robot);
         let starts = Starts::new(robot, &limits, reach);
-        Self { robot, kinds: robot.joint_kinds(), limits, reach, wrist: Wrist::of(robot, reach), starts }
+        Self { robot, kinds: robot.joint_kinds(), limits, reach, wrist: Closed::of(robot, reach), starts }
     }
 
     /// Whether the arm has a closed form: an axis, two parallel ones across it,
-    /// and either three that meet in a point or, of five, two.
+    /// and either three that meet in a point or, of five, two. Of seven axes the first may
+    /// carry one of six.
     pub fn has_closed_form(&self) -> bool {
         self.wrist.is_some()
     }
@@ -156,16 +158,19 @@ impl<'r, R: Robot<N>, const N: usize> Inverse<'r, R, N> {
     pub fn all(&self, target: &Target, seed: &SVector<f64, N>) -> Result<Vec<SVector<f64, N>>, Unreached> {
         check(target, seed)?;
         let (mut solutions, mut outside) = (Vec::new(), None);
-        self.closed(target, seed, |q| match self.within(&q, seed) {
-            Ok(q) => {
-                if let Some(q) = self.polished(target, &q) {
-                    insert(&mut solutions, q, &self.kinds);
+        for seed in self.carried_along(seed) {
+            self.closed(target, &seed, |q| match self.within(&q, &seed) {
+                Ok(q) => {
+                    if let Some(q) = self.polished(target, &q) {
+                        insert(&mut solutions, q, &self.kinds);
+                    }
                 }
-            }
-            Err(beyond) => self.note(&mut outside, target, &q, beyond),
-        });
+                Err(beyond) => self.note(&mut outside, target, &q, beyond),
+            });
+        }
         if solutions.is_empty() {
-            solutions = self.search(target, seed, outside, if self.wrist.is_some() { 1 } else { usize::MAX })?;
+            solutions =
+                self.search(target, seed, outside, if self.wrist.is_some() && N <= 6 { 1 } else { usize::MAX })?;
         }
         solutions.sort_by(|one, other| (one - seed).norm_squared().total_cmp(&(other - seed).norm_squared()));
         Ok(solutions)
@@ -174,7 +179,7 @@ impl<'r, R: Robot<N>, const N: usize> Inverse<'r, R, N> {
     /// Whether the candidates of the closed form are all there can be.
     fn is_exact(&self, target: &Target) -> bool {
         let is_exact = match target.orientation {
-            Orientation::Full(_) => true,
+            Orientation::Full(_) => N <= 6,
             Orientation::Axis { .. } => N == 5,
             Orientation::Free => false,
         };
@@ -280,7 +285,7 @@ impl<'r, R: Robot<N>, const N: usize> Inverse<'r, R, N> {
         // A closed form that found every way to be outside the limits knows.
         let count = match (&self.wrist, &outside) {
             (Some(_), Some(_)) if self.is_exact(target) => 4,
-            (Some(_), _) => 40,
+            (Some(closed), _) if !closed.is_carried() => 40,
             _ => STARTS,
         };
         for start in core::iter::once(*seed).chain(self.starts.nearest_first(target, count, 0.25 * self.reach)) {

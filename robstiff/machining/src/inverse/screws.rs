@@ -66,13 +66,22 @@ impl Axis {
 /// The axes of an arm of revolute joints where all coordinates are zero, and
 /// the pose of the tool there; `None` if a joint slides.
 pub fn axes<const N: usize, R: Robot<N>>(robot: &R) -> Option<([Axis; N], Matrix4<f64>)> {
-    if robot.joint_kinds().contains(&JointKind::Prismatic) {
+    axes_behind::<N, N, R>(robot, 0)
+}
+
+/// The same of the last `M` joints, those behind the first so many.
+pub fn axes_behind<const N: usize, const M: usize, R: Robot<N>>(
+    robot: &R,
+    first: usize,
+) -> Option<([Axis; M], Matrix4<f64>)> {
+    if robot.joint_kinds()[first..].contains(&JointKind::Prismatic) {
         return None;
     }
     let zero = SVector::<f64, N>::zeros();
     let (pose, jacobian) = (robot.transform(&zero), robot.jacobian(&zero));
     let tcp = translation(&pose);
     let axes = core::array::from_fn(|i| {
+        let i = i + first;
         let direction: Vector3<f64> = jacobian.fixed_view::<3, 1>(3, i).into_owned();
         let velocity: Vector3<f64> = jacobian.fixed_view::<3, 1>(0, i).into_owned();
         Axis { direction, point: tcp + direction.cross(&velocity) }

@@ -52,6 +52,34 @@ fn six_axes_have_a_closed_form_that_misses_nothing() {
     }
 }
 
+/// A first axis that slides or turns, in any posture: with it where it was, the others are what they were.
+#[test]
+fn a_carried_arm_has_the_closed_form_of_the_arm() {
+    let text = catalogue::find("kuka-kr270-r2700").unwrap();
+    let carriers = [
+        ("[-90 deg, 0, 0]", "{type: prismatic, alpha: -90 deg, limits: [-2 m, 2 m]}"),
+        ("[180 deg, 0, 0]", "{a: 300 mm, limits: [-170 deg, 170 deg]}"),
+        ("[30 deg, 20 deg, 0]", "{theta: 10 deg, d: 100 mm, a: 300 mm, alpha: 25 deg, limits: [-170 deg, 170 deg]}"),
+    ];
+    for (base, row) in carriers {
+        let text = text.replace("base: {rpy: [180 deg, 0, 0]}", &format!("base: {{rpy: {base}}}"));
+        let text = text.replace("joints:\n", &format!("joints:\n  - {row}\n"));
+        let robot = Generic::<7>::new(&Description::parse("carried.yaml", &text).unwrap()).unwrap();
+        let inverse = Inverse::new(&robot);
+        assert!(inverse.has_closed_form(), "{row}");
+        for q in postures(&robot, 100) {
+            let target = Target::pose(&robot.transform(&q));
+            let mut found = Vec::new();
+            let mut seed = middle(&robot);
+            seed[0] = q[0];
+            inverse.postures(&target, &seed, |q| found.push(q));
+            assert!(found.iter().any(|other| (other - q).amax() < 1e-7), "{row} {q} {found:?}");
+            assert!(found.iter().all(|other| target.remaining(&robot.transform(other)).distance < 1e-9));
+        }
+        check_all(&robot, 20, Target::pose, false);
+    }
+}
+
 #[test]
 fn five_axes_reach_full_poses_and_directions_of_the_tool() {
     let robot = Generic::<5>::new(&catalogued("rv130hsc")).unwrap();

@@ -66,6 +66,17 @@ impl<const N: usize> Wrist<N> {
             return None;
         }
         let (axes, pose) = axes(robot)?;
+        Self::of_axes(axes, &pose, |q| robot.transform(q), reach)
+    }
+
+    /// That of axes where all coordinates are zero, and the pose of the tool there; `whole` is its pose at any
+    /// coordinates.
+    pub fn of_axes(
+        axes: [Axis; N],
+        pose: &Matrix4<f64>,
+        whole: impl Fn(&SVector<f64, N>) -> Matrix4<f64>,
+        reach: f64,
+    ) -> Option<Self> {
         let [first, second, third] = [0, 1, 2].map(|i| axes[i].direction);
         let (center, apart) = meeting(&axes[3], &axes[4])?;
         let off_last = axes[N - 1].direction.cross(&(center - axes[N - 1].point)).norm();
@@ -75,7 +86,7 @@ impl<const N: usize> Wrist<N> {
         if off > NEARLY || !sixth_turns {
             return None;
         }
-        let only_near = off > EXACTLY || strays(robot, &axes, &pose) > EXACTLY * reach;
+        let only_near = off > EXACTLY || strays(whole, &axes, pose) > EXACTLY * reach;
         let frame = Rotation3::face_towards(&first, &second);
         let origin = axes[0].point;
         let axes = axes.map(|axis| Axis {
@@ -84,8 +95,8 @@ impl<const N: usize> Wrist<N> {
         });
         let center = frame.inverse() * (center - origin);
         let base = Base::new(&axes[1], &axes[2], &center);
-        let to_center = center - frame.inverse() * (translation(&pose) - origin);
-        Some(Self { frame, origin, axes, zero: frame.inverse() * rotation(&pose), base, to_center, only_near })
+        let to_center = center - frame.inverse() * (translation(pose) - origin);
+        Some(Self { frame, origin, axes, zero: frame.inverse() * rotation(pose), base, to_center, only_near })
     }
 
     /// Whether solutions need the descent: the axes do not quite lie as they
@@ -229,7 +240,11 @@ pub(super) struct Free {
 
 /// How far turns about the axes at zero take the tool from where the robot has
 /// it (m, and rad alike), at some postures.
-fn strays<const N: usize, R: Robot<N>>(robot: &R, axes: &[Axis; N], zero: &Matrix4<f64>) -> f64 {
+fn strays<const N: usize>(
+    whole: impl Fn(&SVector<f64, N>) -> Matrix4<f64>,
+    axes: &[Axis; N],
+    zero: &Matrix4<f64>,
+) -> f64 {
     let stray = |k: usize| {
         let q = SVector::<f64, N>::from_fn(|i, _| 2.5 * ((k * N + i) as f64 * 1.7).sin());
         let (mut place, mut turn) = (translation(zero), *rotation(zero).matrix());
@@ -238,7 +253,7 @@ fn strays<const N: usize, R: Robot<N>>(robot: &R, axes: &[Axis; N], zero: &Matri
             place = axis.turn(&(place - axis.point), by) + axis.point;
             turn = axis.turn_all(&turn, by);
         }
-        let pose = robot.transform(&q);
+        let pose = whole(&q);
         (translation(&pose) - place).norm().max((rotation(&pose).matrix() - turn).norm())
     };
     (1..=8).map(stray).fold(0.0, f64::max)

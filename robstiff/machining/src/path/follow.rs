@@ -7,7 +7,8 @@ use robstiff_robots::{Diagnostic, Diagnostics, Line};
 use super::planned::planned;
 use super::seeds::spread;
 use super::steps::{Followed, Rank, follow, position};
-use super::{Goal, Orientation, PathPoint, SolvedPath, ToolPath, Unreached, Unsolved};
+use super::turn::FreeTurns;
+use super::{Goal, Known, Orientation, PathPoint, SolvedPath, ToolPath, Unreached, Unsolved};
 use crate::inverse::{Inverse, Target};
 use robstiff::Robot;
 
@@ -45,25 +46,25 @@ impl ToolPath {
         robot: &R,
         start: Option<&SVector<f64, N>>,
     ) -> Result<SolvedPath<N>, Unsolved> {
-        self.solve_at_speeds(robot, start, &[])
+        self.solve_knowing(robot, start, &Known::default())
     }
 
-    /// The same where it is known how fast each joint can move (rad/s or m/s): where turns are planned, the time
-    /// by which the joints are too slow for the feed counts before their movement.
+    /// The same where more is known: where turns are planned, the time by which the joints are too slow for the feed
+    /// counts before their movement, and how far forces push the tool off with it.
     ///
     /// # Errors
     /// As [`solve`](Self::solve).
     ///
     /// # Panics
     /// As [`solve`](Self::solve).
-    pub fn solve_at_speeds<const N: usize, R: Robot<N>>(
+    pub fn solve_knowing<const N: usize, R: Robot<N>>(
         &self,
         robot: &R,
         start: Option<&SVector<f64, N>>,
-        speeds: &[f64],
+        known: &Known<'_>,
     ) -> Result<SolvedPath<N>, Unsolved> {
         let inverse = Inverse::new(robot);
-        let Some(plan) = planned(robot, &inverse, &self.points, start, &middle(robot), speeds) else {
+        let Some(plan) = planned(robot, &inverse, &self.points, start, &middle(robot), known) else {
             return self.finish(robot, self.stepwise(robot, &inverse, start));
         };
         let planned = follow(robot, &self.points, |i, last| match (&self.points[i].goal, &plan.postures[i]) {
@@ -79,6 +80,12 @@ impl ToolPath {
         }
         let stepwise = self.stepwise(robot, &inverse, start);
         self.finish(robot, if planned_rank <= rank(&stepwise) { planned } else { stepwise })
+    }
+
+    /// Whether its turns about the tool's axis are planned: all are free, and the arm takes every one.
+    pub fn is_planned<const N: usize, R: Robot<N>>(&self, robot: &R) -> bool {
+        let inverse = Inverse::new(robot);
+        inverse.takes_every_turn() && FreeTurns::of(&self.points, inverse.scale(), &Known::default()).is_some()
     }
 
     /// Each point nearest to the one before.

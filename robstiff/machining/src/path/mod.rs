@@ -21,7 +21,7 @@ mod steps;
 mod tests;
 mod turn;
 
-use nalgebra::{Matrix4, SVector, Unit, Vector3};
+use nalgebra::{Matrix4, SVector, Unit, Vector3, Vector6};
 use robstiff_robots::text::Lines;
 use robstiff_robots::{Diagnostics, words};
 
@@ -75,6 +75,15 @@ pub enum Goal {
     Tool(Target),
     /// Joint coordinates (rad or m).
     Joints(Vec<f64>),
+}
+
+/// What is known beside a path, for the plan of its turns.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Known<'k> {
+    /// How fast each joint can move (rad/s or m/s); empty where that is not known.
+    pub speeds: &'k [f64],
+    /// What acts on the tool at each point, in the base frame (N, Nm); empty where that is not known.
+    pub forces: &'k [Vector6<f64>],
 }
 
 /// A tool path with the joint coordinates of an arm of `N` joints.

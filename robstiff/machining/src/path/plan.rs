@@ -4,8 +4,10 @@
 //! them is found by dynamic programming (Bellman 1957). One thing counts before the next, so that nothing
 //! is weighed against anything else: the fewest changes of posture; the greatest distance from limits and
 //! singular places at the worst station, as far as it is less than enough; the same at all others; where feeds
-//! and speeds of the joints are known, the least time by which these are too slow; the least movement of the
-//! joints, as the sum of their squares. Then the steps between the turns are halved about the way found.
+//! and speeds of the joints are known, the least time by which these are too slow; the least effort. That is the
+//! movement of the joints, as the sum of their squares, and where forces are known how far they push the tool off,
+//! as the square of its share in what turns and postures taken at random have: per radian of the path a radian of
+//! the joints counts as much as that. Then the steps between the turns are halved about the way found.
 
 use core::cmp::Ordering;
 
@@ -20,7 +22,7 @@ use robstiff::Robot;
 /// neighbouring points at most, and more than that nobody sees.
 const HALVINGS: i32 = 4;
 
-/// Movements (rad) and times (s) that differ by less are the same: rounding is no reason to prefer one.
+/// Efforts (rad) and times (s) that differ by less are the same: rounding is no reason to prefer one.
 const SAME: f64 = 1e-6;
 
 /// A planned path: a posture for each station.
@@ -59,8 +61,9 @@ struct Cost {
     near: u64,
     /// How much longer (s) than the feed allows the joints take.
     late: f64,
-    /// The sum of the squares of what the joints move by in a step (rad).
-    movement: f64,
+    /// The sum over the path of the squares of how far the joints move (rad per rad of the path) and of how far the
+    /// force pushes the tool off (as a share of the root mean square over all states).
+    effort: f64,
     /// How far it begins from the middle of the joints' ranges.
     begun: f64,
 }
@@ -72,7 +75,7 @@ impl Cost {
         whole(self)
             .cmp(&whole(other))
             .then_with(|| rounded(self.late, other.late))
-            .then_with(|| rounded(self.movement, other.movement))
+            .then_with(|| rounded(self.effort, other.effort))
             .then_with(|| self.begun.total_cmp(&other.begun))
     }
 }
@@ -82,7 +85,7 @@ impl<const N: usize> Plan<N> {
     /// the first point, if that is given. `middle` is that of the joints' ranges. `None` where no station has a
     /// posture.
     pub fn of<R: Robot<N>>(
-        inverse: &Inverse<'_, R, N>,
+        (robot, inverse): (&R, &Inverse<'_, R, N>),
         path: &FreeTurns,
         points: impl Iterator<Item = usize>,
         start: Option<(&SVector<f64, N>, f64)>,
@@ -90,10 +93,11 @@ impl<const N: usize> Plan<N> {
     ) -> Option<Self> {
         let first = start.map_or(0.0, |(_, turn)| turn);
         let around = || (0..TURNS).map(|k| first + STEP * k as f64);
+        let places = inverse.carried_along(middle);
         let layer = |point: usize| {
             let states = match start {
                 Some((q, turn)) if point == 0 => vec![stations::state(inverse, *q, turn)],
-                _ => stations::states(inverse, path, point, around(), middle),
+                _ => stations::states((robot, inverse), path, point, around(), &places),
             };
             Station { point, progress: path.progress()[point], states }
         };
@@ -101,7 +105,8 @@ impl<const N: usize> Plan<N> {
         if layers.is_empty() {
             return None;
         }
-        let mut stops = best(inverse, path, &layers, middle);
+        let usual = usual(&layers);
+        let mut stops = best(inverse, path, &layers, middle, usual);
         for halving in 1..=HALVINGS {
             let step = STEP * 0.5_f64.powi(halving);
             let layers: Vec<_> = stops
@@ -110,7 +115,8 @@ impl<const N: usize> Plan<N> {
                     let turns = [-step, 0.0, step].map(|by| stop.state.turn + by).into_iter();
                     let mut states = vec![stop.state];
                     if start.is_none() || stop.point > 0 {
-                        states = stations::states(inverse, path, stop.point, turns, middle);
+                        let places = between(inverse, middle, &stop.state.q, 0.5_f64.powi(halving));
+                        states = stations::states((robot, inverse), path, stop.point, turns, &places);
                         states.retain(|state| leads_to(inverse, &stop.state, state, 0.0));
                     }
                     if states.is_empty() {
@@ -119,7 +125,7 @@ impl<const N: usize> Plan<N> {
                     Station { point: stop.point, progress: stop.progress, states }
                 })
                 .collect();
-            stops = best(inverse, path, &layers, middle);
+            stops = best(inverse, path, &layers, middle, usual);
         }
         Some(Self { stops })
     }
@@ -150,6 +156,18 @@ impl<const N: usize> Plan<N> {
     }
 }
 
+/// Places of the axis that carries the arm beside that of a posture, a share of a step away; the middle alone where
+/// none does.
+fn between<const N: usize, R: Robot<N>>(
+    inverse: &Inverse<'_, R, N>,
+    middle: &SVector<f64, N>,
+    q: &SVector<f64, N>,
+    share: f64,
+) -> Vec<SVector<f64, N>> {
+    let Some(step) = inverse.carrier_step() else { return vec![*middle] };
+    [-1.0, 0.0, 1.0].map(|side| inverse.carried_to(middle, q[0] + side * share * step)).to_vec()
+}
+
 /// The best way through the stations: first with a margin as large as can be, up to enough, then with no more
 /// than that asked for, so that a way that was worse up to somewhere may be better in all.
 fn best<const N: usize, R: Robot<N>>(
@@ -157,9 +175,19 @@ fn best<const N: usize, R: Robot<N>>(
     path: &FreeTurns,
     stations: &[Station<N>],
     middle: &SVector<f64, N>,
+    usual: f64,
 ) -> Vec<Stop<N>> {
-    let (stops, cost) = way(inverse, path, stations, middle, FAR_ENOUGH);
-    if cost.nearer == 0 { stops } else { way(inverse, path, stations, middle, FAR_ENOUGH - cost.nearer).0 }
+    let (stops, cost) = way(inverse, path, stations, middle, usual, FAR_ENOUGH);
+    if cost.nearer == 0 { stops } else { way(inverse, path, stations, middle, usual, FAR_ENOUGH - cost.nearer).0 }
+}
+
+/// The mean square (m^2) of how far the forces push the tool off, over all states of stations where they do; not 0.
+fn usual<const N: usize>(stations: &[Station<N>]) -> f64 {
+    let (mut sum, mut count) = (0.0, 0.0_f64);
+    for state in stations.iter().flat_map(|station| &station.states).filter(|state| state.off > 0.0) {
+        (sum, count) = (sum + state.off, count + 1.0);
+    }
+    if sum > 0.0 { sum / count } else { 1.0 }
 }
 
 fn way<const N: usize, R: Robot<N>>(
@@ -167,6 +195,7 @@ fn way<const N: usize, R: Robot<N>>(
     path: &FreeTurns,
     stations: &[Station<N>],
     middle: &SVector<f64, N>,
+    usual: f64,
     enough: u8,
 ) -> (Vec<Stop<N>>, Cost) {
     // Of each state the cost of the best way there, and which state that comes from.
@@ -175,21 +204,23 @@ fn way<const N: usize, R: Robot<N>>(
         let before = k.checked_sub(1).map(|k| (&stations[k], &ways[k]));
         let cheapest = before.map(|(_, ways)| cheapest(ways));
         let reached = station.states.iter().map(|state| {
-            let own = |from: &Cost, late: f64, movement: f64| Cost {
+            let own = |from: &Cost, late: f64, effort: f64| Cost {
                 nearer: from.nearer.max(enough.saturating_sub(state.margin)),
                 near: from.near + u64::from(FAR_ENOUGH - state.margin).pow(2),
                 late: from.late + late,
-                movement: from.movement + movement,
+                effort: from.effort + effort,
                 ..*from
             };
             let (Some((last, ways)), Some(cheapest)) = (before, cheapest) else {
                 let begun = inverse.change(middle, &state.q).norm_squared();
-                return (own(&Cost { changes: 0, nearer: 0, near: 0, late: 0.0, movement: 0.0, begun }, 0.0, 0.0), 0);
+                return (own(&Cost { changes: 0, nearer: 0, near: 0, late: 0.0, effort: 0.0, begun }, 0.0, 0.0), 0);
             };
-            let step = (station.progress - last.progress).max(f64::MIN_POSITIVE);
+            let ahead = station.progress - last.progress;
+            let step = ahead.max(f64::MIN_POSITIVE);
             let reach = |index: usize, before: &Cost, step: f64| {
                 let change = inverse.change(&last.states[index].q, &state.q);
-                own(before, path.late([last.point, station.point], change.as_slice()), change.norm_squared() / step)
+                let effort = inverse.as_angles(&change).norm_squared() / step + ahead * state.off / usual;
+                own(before, path.late([last.point, station.point], change.as_slice()), effort)
             };
             // A change of posture may come from anywhere.
             let changed = Cost { changes: ways[cheapest].0.changes + 1, ..ways[cheapest].0 };

@@ -2,15 +2,15 @@
 
 use core::f64::consts::TAU;
 
-use nalgebra::{SVector, Unit, Vector3};
+use nalgebra::{SVector, Unit, Vector3, Vector6};
 use robstiff_robots::{Description, catalogue};
 
 use super::stations::margin;
 use super::steps::{Rank, follow};
 use super::turn::FreeTurns;
-use super::{Goal, SolvedPath, ToolPath, Unreached, stations};
+use super::{Goal, Known, SolvedPath, ToolPath, Unreached, stations};
 use crate::inverse::Inverse;
-use robstiff::Generic;
+use robstiff::{Generic, Robot};
 
 /// A KR 270 with a spindle across its last axis: a turn about the tool's axis moves all joints.
 fn with_spindle() -> (Description, Generic<6>) {
@@ -105,7 +105,7 @@ fn a_plan_is_never_worse_than_steps() {
         let steps = path.stepwise(&robot, &Inverse::new(&robot), None);
         let solved = path.solve(&robot, None).unwrap();
         let inverse = Inverse::new(&robot);
-        let free = FreeTurns::of(&path.points, inverse.scale(), &[]).unwrap();
+        let free = FreeTurns::of(&path.points, inverse.scale(), &Known::default()).unwrap();
         let again = follow(&robot, &path.points, |i, _| Ok(solved.points[i].q));
         let [rank, greedy] = [again, steps].map(|of| Rank::of(&of, &robot, &inverse, &free));
         assert!(rank <= greedy && rank.changes_and_nearer() <= (1, 9), "lean {lean}: {rank:?} {greedy:?}");
@@ -141,9 +141,88 @@ fn a_joint_that_is_too_slow_has_less_to_do() {
         ways.sum::<f64>()
     };
     let speeds = [1.0, 1.0, 1.0, 0.6, 1.0, 0.3];
-    let [free, bound] =
-        [&[][..], &speeds].map(|known| late(&path.solve_at_speeds(&robot, None, known).unwrap(), &speeds));
+    let [free, bound] = [&[][..], &speeds].map(|known| {
+        let known = Known { speeds: known, ..Known::default() };
+        late(&path.solve_knowing(&robot, None, &known).unwrap(), &speeds)
+    });
     assert!(free > 0.5 && bound < 0.5 * free, "{free} {bound}");
+}
+
+/// A KR 270 with a spindle on a rail along the base's y, or on a turntable about its z.
+fn carried(by: &str) -> (Description, Generic<7>) {
+    let text = catalogue::find("kuka-kr270-r2700").unwrap();
+    let (base, row) = match by {
+        "rail" => ("base: {rpy: [-90 deg, 0, 0]}", "{type: prismatic, alpha: -90 deg, limits: [-2 m, 2 m]}"),
+        _ => ("base: {rpy: [180 deg, 0, 0]}", "{a: 300 mm, limits: [-170 deg, 170 deg]}"),
+    };
+    let text =
+        text.replace("base: {rpy: [180 deg, 0, 0]}", base).replace("joints:\n", &format!("joints:\n  - {row}\n"));
+    let text = format!("{text}\ntool: {{xyz: [250 mm, 0, 180 mm], rpy: [0, 90 deg, 0]}}\n");
+    let description = Description::parse("carried.yaml", &text).unwrap_or_else(|problems| panic!("{problems}"));
+    let robot = Generic::new(&description).unwrap();
+    (description, robot)
+}
+
+/// A cut that is longer than the arm reaches, and one that is not: the axis that carries it goes as far as is needed.
+#[test]
+fn a_rail_and_a_turntable_are_planned_with_the_turn() {
+    for by in ["rail", "table"] {
+        let (description, robot) = carried(by);
+        let inverse = Inverse::new(&robot);
+        assert!(inverse.takes_every_turn(), "{by}");
+        for length in [if by == "rail" { 5.0 } else { 3.4 }, 0.4] {
+            let row = |k: usize| match by {
+                "rail" => format!("1.7,{},0.8,0,0,-1\n", length * (k as f64 / 100.0 - 0.5)),
+                _ => {
+                    let (y, x) = (length * (k as f64 / 100.0 - 0.5)).sin_cos();
+                    format!("{},{},0.8,0,0,-1\n", 1.9 * x, 1.9 * y)
+                }
+            };
+            let text = format!("x,y,z,ux,uy,uz\n{}", (0..=100).map(row).collect::<String>());
+            let path = read(&text, &description, Vector3::z_axis());
+            let solved = path.solve(&robot, None).unwrap_or_else(|unsolved| panic!("{by} {length}: {unsolved}"));
+            assert!(solved.jumps.is_empty(), "{by} {length}: {:?}", solved.jumps);
+            let margins = solved.points.iter().map(|point| margin(&inverse, &point.q));
+            assert_eq!(margins.min(), Some(10), "{by} {length}");
+            for (point, of_path) in solved.points.iter().zip(&path.points) {
+                let Goal::Tool(target) = &of_path.goal else { panic!("a pose") };
+                let off = target.remaining(&point.pose);
+                assert!(off.distance < 1e-9 && off.angle < 1e-9, "{off:?}");
+            }
+            // Smoothly, and not more than the path is long.
+            let first = |i: usize| solved.points[i].q[0];
+            let moved: f64 = (1..=100).map(|i| (first(i) - first(i - 1)).abs()).sum();
+            let most = (1..=100).map(|i| (first(i) - first(i - 1)).abs()).fold(0.0, f64::max);
+            assert!(by != "rail" || length < 1.0 || moved > 0.5, "{moved}");
+            assert!(moved <= 1.2 * length && most < 0.1 * length.max(1.0), "{by} {length}: {moved} {most}");
+        }
+    }
+}
+
+/// Of turns that keep clear of limits alike, those at which the force pushes the tool off less.
+#[test]
+fn a_plan_that_knows_the_force_is_stiffer() {
+    let (description, robot) = with_spindle();
+    let rows = (0..60).map(|k| format!("{},{},0.9,0,0,-1\n", 1.4 + 0.003 * f64::from(k), 0.01 * f64::from(k) - 0.3));
+    let path = read(&format!("x,y,z,ux,uy,uz\n{}", rows.collect::<String>()), &description, Vector3::z_axis());
+    let force = Vector6::new(400.0, -300.0, 100.0, 0.0, 0.0, 0.0);
+    let forces = vec![force; path.points.len()];
+    let [blind, seeing] = [&[][..], &forces].map(|forces| {
+        let solved = path.solve_knowing(&robot, None, &Known { forces, ..Known::default() }).unwrap();
+        assert!(solved.jumps.is_empty() && least(&robot, postures(&solved)) == 10);
+        let off = postures(&solved).map(|q| robot.deflection(&q, &force).fixed_rows::<3>(0).norm_squared());
+        (off.sum::<f64>() / path.points.len() as f64).sqrt()
+    });
+    assert!(seeing < 0.95 * blind, "{seeing} {blind}");
+    // An arm that does not yield is planned as without a force.
+    let rigid = Generic::<6>::new(&{
+        let mut rigid = description.clone();
+        rigid.joints.iter_mut().for_each(|joint| joint.compliance.clear());
+        rigid
+    });
+    let rigid = rigid.unwrap();
+    let with = path.solve_knowing(&rigid, None, &Known { forces: &forces, ..Known::default() }).unwrap();
+    assert_eq!(with, path.solve(&rigid, None).unwrap());
 }
 
 #[test]
@@ -175,7 +254,7 @@ fn turns_are_measured_from_a_reference_that_does_not_spin() {
     // Through the vertical, where a projected direction would turn round.
     let rows = (-20..=20).map(|k| format!("1.5,0,0.8,{},0.0001,-1\n", 0.05 * f64::from(k)));
     let path = read(&format!("x,y,z,ux,uy,uz\n{}", rows.collect::<String>()), &description, Vector3::z_axis());
-    let free = FreeTurns::of(&path.points, 0.5, &[]).unwrap();
+    let free = FreeTurns::of(&path.points, 0.5, &Known::default()).unwrap();
     let mut last: Option<nalgebra::Rotation3<f64>> = None;
     for point in 0..path.points.len() {
         let super::Orientation::Full(rotation) = free.target(point, 0.7).orientation else { panic!("a pose") };
@@ -194,7 +273,7 @@ fn turns_are_measured_from_a_reference_that_does_not_spin() {
 #[test]
 fn stations_are_a_step_apart_and_at_both_ends_of_long_chords() {
     let progress = [0.0, 0.1, 0.15, 0.2, 0.25, 0.9, 0.95, 1.0];
-    assert_eq!(stations::points(&progress), [0, 2, 4, 5, 7]);
-    assert_eq!(stations::points(&[0.0]), [0]);
-    assert_eq!(stations::points(&[0.0, 0.0]), [0, 1]);
+    assert_eq!(stations::points(&progress, 1), [0, 2, 4, 5, 7]);
+    assert_eq!(stations::points(&[0.0], 1), [0]);
+    assert_eq!(stations::points(&[0.0, 0.0], 1), [0, 1]);
 }

@@ -6,7 +6,7 @@ use nalgebra::SVector;
 
 use super::plan::{Plan, Wanted};
 use super::turn::FreeTurns;
-use super::{Goal, Waypoint, stations};
+use super::{Goal, Known, Waypoint, stations};
 use crate::inverse::Inverse;
 use robstiff::Robot;
 
@@ -25,7 +25,7 @@ pub struct Planned<const N: usize> {
 }
 
 /// Plans the turns of a path, from the posture at its first point that is nearest to a `start` (rad), if that
-/// is given; `middle` is that of the joints' ranges, `speeds` (rad/s) are theirs where they are known. `None` where a turn is not free, or the arm does not take
+/// is given; `middle` is that of the joints' ranges. `None` where a turn is not free, or the arm does not take
 /// every turn or reaches no point.
 pub fn planned<const N: usize, R: Robot<N>>(
     robot: &R,
@@ -33,19 +33,20 @@ pub fn planned<const N: usize, R: Robot<N>>(
     points: &[Waypoint],
     start: Option<&SVector<f64, N>>,
     middle: &SVector<f64, N>,
-    speeds: &[f64],
+    known: &Known<'_>,
 ) -> Option<Planned<N>> {
-    let path = FreeTurns::of(points, inverse.scale(), speeds).filter(|_| inverse.takes_every_turn())?;
+    let path = FreeTurns::of(points, inverse.scale(), known).filter(|_| inverse.takes_every_turn())?;
     let start = match (start, &points.first()?.goal) {
         (Some(start), Goal::Tool(target)) => Some(inverse.nearest(target, start).ok()?),
         _ => None,
     };
     let start = start.as_ref().map(|q| (q, path.turn_of(0, &robot.transform(q))));
-    let mut stations: BTreeSet<usize> = stations::points(path.progress()).into_iter().collect();
+    let mut stations: BTreeSet<usize> =
+        stations::points(path.progress(), inverse.carried_along(middle).len()).into_iter().collect();
     let mut round = 0;
     loop {
         round += 1;
-        let wanted = Plan::of(inverse, &path, stations.iter().copied(), start, middle)?.along(inverse, &path);
+        let wanted = Plan::of((robot, inverse), &path, stations.iter().copied(), start, middle)?.along(inverse, &path);
         let solve = |(point, wanted): (usize, &Wanted<N>)| {
             let q = inverse.exactly(&path.target(point, wanted.turn), &wanted.near)?;
             (inverse.side(&q) == wanted.side && inverse.is_within_half_a_turn(&q, &wanted.near)).then_some(q)

@@ -5,9 +5,9 @@
 //! it must. It does not know which way along the axis is named: a path of the tool's axis and one of its
 //! reverse have the same turns, to the last digit.
 
-use nalgebra::{Matrix3, Matrix4, Rotation3, Unit, Vector3};
+use nalgebra::{Matrix3, Matrix4, Rotation3, Unit, Vector3, Vector6};
 
-use super::{Goal, Orientation, Waypoint};
+use super::{Goal, Known, Orientation, Waypoint};
 use crate::inverse::Target;
 
 /// The poses of a path with its turns free.
@@ -22,6 +22,8 @@ pub struct FreeTurns {
     clock: Vec<(f64, usize)>,
     /// How fast each joint can move (rad/s); empty where that is not known.
     speeds: Vec<f64>,
+    /// What acts on the tool at each point (N, Nm); empty where that is not known.
+    forces: Vec<Vector6<f64>>,
 }
 
 /// A point of the path.
@@ -35,9 +37,8 @@ struct Reference {
 
 impl FreeTurns {
     /// Those of a path; `None` if not all of its points leave the turn about one axis of the tool free. A way
-    /// of `scale` (m) counts as an angle of 1 rad; `speeds` are how fast each joint can move (rad/s), empty where
-    /// that is not known.
-    pub fn of(points: &[Waypoint], scale: f64, speeds: &[f64]) -> Option<Self> {
+    /// of `scale` (m) counts as an angle of 1 rad.
+    pub fn of(points: &[Waypoint], scale: f64, known: &Known<'_>) -> Option<Self> {
         let mut tool: Option<Unit<Vector3<f64>>> = None;
         let mut references: Vec<Reference> = Vec::with_capacity(points.len());
         for point in points {
@@ -59,7 +60,8 @@ impl FreeTurns {
             progress: progress(&references, scale),
             clock: clock(points, &references),
             points: references,
-            speeds: speeds.to_vec(),
+            speeds: known.speeds.to_vec(),
+            forces: known.forces.to_vec(),
         })
     }
 
@@ -84,6 +86,11 @@ impl FreeTurns {
     /// How far the tool goes up to each point (rad).
     pub fn progress(&self) -> &[f64] {
         &self.progress
+    }
+
+    /// What acts on the tool at a point (N, Nm), where that is known and anything does.
+    pub fn force(&self, point: usize) -> Option<&Vector6<f64>> {
+        self.forces.get(point).filter(|force| **force != Vector6::zeros())
     }
 
     /// How much longer (s) than the feed allows a change of the joints takes from one point to another; 0 where

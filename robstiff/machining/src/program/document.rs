@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 use std::ops::Range;
 
-use super::{Instruction, Language, Move, Position, Program, TextFile, krl, ls, rapid};
+use super::{Instruction, Language, Move, Position, Program, TextFile, krl, ls, rapid, ur};
 
 /// Where a number of a position stands in a file.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -108,6 +108,7 @@ impl Document {
                 Language::Krl => krl::numbers(position),
                 Language::Rapid => rapid::numbers(position),
                 Language::Ls => ls::numbers(position),
+                Language::Ur => ur::numbers(position),
             };
             let Some(first) = place.slots.first() else { continue };
             if let Some(&before) = taken.get(&(place.file, first.bytes.start)) {

@@ -15,7 +15,8 @@
 //! reference manual, RAPID Instructions, Functions and Data types, 3HAC16581
 //! (robtarget, confdata, speeddata, zonedata); FANUC R-30iB operator's manual
 //! B-83284EN (motion instructions, CONFIG) and ASCII program files as controllers
-//! print them.
+//! print them; Universal Robots, The URScript Programming Language for e-Series
+//! (movej, movel, movep, set_tcp, pose_trans).
 
 pub mod angles;
 mod document;
@@ -26,6 +27,7 @@ pub mod rapid;
 mod source;
 #[cfg(test)]
 mod tests;
+pub mod ur;
 mod writing;
 
 use nalgebra::Isometry3;
@@ -184,6 +186,8 @@ pub enum Configuration {
 pub enum Speed {
     /// Of the TCP (m/s).
     Tool(f64),
+    /// Of the joint that moves most (rad/s).
+    Joints(f64),
     /// As a share of the fastest, from 0 to 1.
     Share(f64),
     /// A name that the program does not declare, or a form that is kept as it is.
@@ -212,11 +216,13 @@ pub enum Language {
     Rapid,
     /// FANUC TP programs as text: `.ls`.
     Ls,
+    /// Universal Robots' URScript: `.script`.
+    Ur,
 }
 
 impl Language {
     /// All of them.
-    pub const ALL: [Self; 3] = [Self::Krl, Self::Rapid, Self::Ls];
+    pub const ALL: [Self; 4] = [Self::Krl, Self::Rapid, Self::Ls, Self::Ur];
 
     /// The language of a file by the end of its name.
     pub fn of_file(name: &str) -> Option<Self> {
@@ -225,6 +231,7 @@ impl Language {
             "src" | "dat" | "sub" => Some(Self::Krl),
             "mod" | "modx" | "prg" => Some(Self::Rapid),
             "ls" => Some(Self::Ls),
+            "script" | "urscript" => Some(Self::Ur),
             _ => None,
         }
     }
@@ -235,6 +242,7 @@ impl Language {
             Self::Krl => "krl",
             Self::Rapid => "rapid",
             Self::Ls => "ls",
+            Self::Ur => "ur",
         }
     }
 }
@@ -261,6 +269,7 @@ pub fn read(language: Language, files: Vec<TextFile>) -> Result<Document, Diagno
         Language::Krl => krl::read(files),
         Language::Rapid => rapid::read(files),
         Language::Ls => ls::read(files),
+        Language::Ur => ur::read(files),
     }
 }
 
@@ -273,5 +282,6 @@ pub fn write(language: Language, program: &Program) -> Result<Vec<TextFile>, Vec
         Language::Krl => krl::write(program, &krl::Options::default()),
         Language::Rapid => rapid::write(program),
         Language::Ls => ls::write(program),
+        Language::Ur => ur::write(program),
     }
 }

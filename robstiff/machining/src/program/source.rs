@@ -79,6 +79,16 @@ impl Sources {
     }
 }
 
+/// The bytes of a line before its comment, which a character begins outside of quotes.
+pub(super) fn code(text: &str, bytes: Range<usize>, comment: char) -> Range<usize> {
+    let mut quoted = false;
+    let found = text[bytes.clone()].char_indices().find(|&(_, letter)| {
+        quoted ^= letter == '"';
+        letter == comment && !quoted
+    });
+    bytes.start..found.map_or(bytes.end, |(at, _)| bytes.start + at)
+}
+
 /// A place in a text, and how far it may go.
 #[derive(Clone, Copy)]
 pub(super) struct Cursor<'t> {

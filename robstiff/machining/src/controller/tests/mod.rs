@@ -27,3 +27,20 @@ fn fanuc() -> Description {
 fn degrees(of: [f64; 6]) -> SVector<f64, 6> {
     SVector::from(of.map(f64::to_radians))
 }
+
+/// Universal Robots' UR10e, with the maker's table; its wrist does not meet in a point.
+fn ur() -> Description {
+    let text = "\
+name: Ur10e
+convention: standard
+joints:
+  - {theta: 0, d: 180.7 mm, alpha: 90 deg, limits: [-360 deg, 360 deg]}
+  - {theta: 0, a: -612.7 mm, limits: [-360 deg, 360 deg]}
+  - {theta: 0, a: -571.55 mm, limits: [-180 deg, 180 deg]}
+  - {theta: 0, d: 174.15 mm, alpha: 90 deg, limits: [-360 deg, 360 deg]}
+  - {theta: 0, d: 119.85 mm, alpha: -90 deg, limits: [-360 deg, 360 deg]}
+  - {theta: 0, d: 116.55 mm, limits: [-360 deg, 360 deg]}
+controller: {}
+";
+    Description::parse("ur10e.yaml", text).unwrap_or_else(|problems| panic!("{problems}"))
+}

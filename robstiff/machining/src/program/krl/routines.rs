@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use crate::program::order::in_order;
-use crate::program::source::Sources;
+use crate::program::source::{self, Sources};
 
 /// A line of a file: the file and the bytes, without comment and line end.
 pub(super) type Place = (usize, Range<usize>);
@@ -20,14 +20,9 @@ pub(super) fn lines(sources: &Sources, file: usize) -> impl Iterator<Item = Plac
     (1..=lines.count()).map(move |number| (file, lines.range(number)))
 }
 
-/// The bytes of a line before its comment, which `;` begins outside of quotes.
+/// The bytes of a line before its comment.
 pub(super) fn code(text: &str, bytes: Range<usize>) -> Range<usize> {
-    let mut quoted = false;
-    let comment = text[bytes.clone()].char_indices().find(|&(_, letter)| {
-        quoted ^= letter == '"';
-        letter == ';' && !quoted
-    });
-    bytes.start..comment.map_or(bytes.end, |(at, _)| bytes.start + at)
+    source::code(text, bytes, ';')
 }
 
 /// The routines of all files, in order; a `.dat` has none.

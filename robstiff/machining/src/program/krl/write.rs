@@ -166,13 +166,13 @@ impl Writer {
             (Some(Speed::Named(name)), Motion::Joint) => {
                 self.set("PTP", name.clone(), format!("BAS(#VEL_PTP,{name})"));
             }
-            (Some(Speed::Tool(_)), Motion::Joint) => {
-                return Err("PTP takes a share of the fastest, not a speed of the tool".to_owned());
+            (Some(Speed::Tool(_) | Speed::Joints(_)), Motion::Joint) => {
+                return Err("PTP takes a share of the fastest, not a speed".to_owned());
             }
             (Some(Speed::Tool(speed)), Motion::Linear) => self.assign("$VEL.CP", short(*speed, 7)),
             (Some(Speed::Named(name)), Motion::Linear) => self.assign("$VEL.CP", name.clone()),
-            (Some(Speed::Share(_)), Motion::Linear) => {
-                return Err("LIN takes a speed of the tool, not a share of the fastest".to_owned());
+            (Some(Speed::Share(_) | Speed::Joints(_)), Motion::Linear) => {
+                return Err("LIN takes a speed of the tool, not one of the joints".to_owned());
             }
         }
         let zone = match (&to.zone, to.motion) {

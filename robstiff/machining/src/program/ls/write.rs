@@ -99,11 +99,11 @@ impl Writer {
             }
             (Some(Speed::Named(name)), _) => name.clone(),
             (None, _) => return Err("a motion has a speed".to_owned()),
-            (Some(Speed::Tool(_)), Motion::Joint) => {
-                return Err("J takes a share of the fastest, not a speed of the tool".to_owned());
+            (Some(Speed::Tool(_) | Speed::Joints(_)), Motion::Joint) => {
+                return Err("J takes a share of the fastest, not a speed".to_owned());
             }
-            (Some(Speed::Share(_)), Motion::Linear) => {
-                return Err("L takes a speed of the tool, not a share of the fastest".to_owned());
+            (Some(Speed::Share(_) | Speed::Joints(_)), Motion::Linear) => {
+                return Err("L takes a speed of the tool, not one of the joints".to_owned());
             }
         };
         let zone = match &to.zone {

@@ -119,8 +119,8 @@ impl Writer {
             None => return Err("a motion has a speed".to_owned()),
             Some(Speed::Named(name)) => name.clone(),
             Some(Speed::Tool(speed)) => self.speed(speed * 1e3)?,
-            Some(Speed::Share(_)) => {
-                return Err("RAPID takes a speed of the tool, not a share of the fastest".to_owned());
+            Some(Speed::Share(_) | Speed::Joints(_)) => {
+                return Err("RAPID takes a speed of the tool, not one of the joints".to_owned());
             }
         };
         let zone = match &to.zone {

@@ -38,14 +38,16 @@ pub fn configuration(language: Language) -> BoxedStrategy<Option<Configuration>>
                     .prop_map(move |turns| Some(Configuration::Fanuc { flip, left, up, front, turns }))
             })
             .boxed(),
+        Language::Ur => Just(None).boxed(),
     }
 }
 
 fn position(language: Language, motion: Motion) -> BoxedStrategy<Position> {
-    let external = prop::collection::vec(rounded(-900.0..900.0, 1e-3).prop_map(Some), 0..=2);
+    let most_external = if language == Language::Ur { 0 } else { 2 };
+    let external = prop::collection::vec(rounded(-900.0..900.0, 1e-3).prop_map(Some), 0..=most_external);
     let pose = (pose(), configuration(language)).prop_map(|(pose, which)| Target::Pose(pose, which));
     let joints = prop::collection::vec(-6.0..6.0, 6).prop_map(Target::Joints);
-    let linear_joints = language == Language::Ls;
+    let linear_joints = matches!(language, Language::Ls | Language::Ur);
     let target = match motion {
         Motion::Linear if !linear_joints => pose.boxed(),
         _ => prop_oneof![pose, joints].boxed(),
@@ -58,6 +60,7 @@ fn speed(language: Language, motion: Motion) -> BoxedStrategy<Speed> {
     let share = (1u32..=100).prop_map(|percent| Speed::Share(f64::from(percent) * 1e-2));
     match (language, motion) {
         (Language::Krl | Language::Ls, Motion::Joint) => share.boxed(),
+        (Language::Ur, Motion::Joint) => (1u32..3000).prop_map(|mrad| Speed::Joints(f64::from(mrad) * 1e-3)).boxed(),
         _ => tool.boxed(),
     }
 }
@@ -67,7 +70,7 @@ fn zone(language: Language) -> BoxedStrategy<Zone> {
     let share = (0u32..=100).prop_map(|percent| Zone::Share(f64::from(percent) * 1e-2));
     match language {
         Language::Krl => prop_oneof![Just(Zone::Fine), within, share].boxed(),
-        Language::Rapid => prop_oneof![Just(Zone::Fine), within].boxed(),
+        Language::Rapid | Language::Ur => prop_oneof![Just(Zone::Fine), within].boxed(),
         Language::Ls => prop_oneof![Just(Zone::Fine), share].boxed(),
     }
 }
@@ -89,6 +92,7 @@ pub fn statement(language: Language) -> &'static str {
         Language::Krl => "$OUT[12]=TRUE ; spindle on",
         Language::Rapid => "SetDO doSpindle,1;",
         Language::Ls => "DO[12:spindle]=ON",
+        Language::Ur => "set_digital_out(3, True) # spindle on",
     }
 }
 
@@ -109,7 +113,7 @@ fn frames(language: Language, tool: Isometry3<f64>, work: Isometry3<f64>, number
             Instruction::Tool(frame(number.to_string(), Some(tool))),
             Instruction::Work(frame(String::new(), Some(work))),
         ],
-        Language::Rapid => vec![
+        Language::Rapid | Language::Ur => vec![
             Instruction::Tool(frame("tSpindle".to_owned(), Some(tool))),
             Instruction::Work(frame("wPart".to_owned(), Some(work))),
         ],
@@ -160,7 +164,9 @@ pub fn same(written: &Program, read: &Program, digits: Digits) -> Result<(), Str
 fn close(a: &Move, b: &Move) -> bool {
     let number = |a: f64, b: f64| (a - b).abs() <= 1e-9 * a.abs().max(1.0);
     let speed = match (&a.speed, &b.speed) {
-        (Some(Speed::Tool(a)), Some(Speed::Tool(b))) | (Some(Speed::Share(a)), Some(Speed::Share(b))) => number(*a, *b),
+        (Some(Speed::Tool(a)), Some(Speed::Tool(b)))
+        | (Some(Speed::Joints(a)), Some(Speed::Joints(b)))
+        | (Some(Speed::Share(a)), Some(Speed::Share(b))) => number(*a, *b),
         (a, b) => a == b,
     };
     let zone = match (&a.zone, &b.zone) {

@@ -5,3 +5,4 @@ mod krl;
 mod ls;
 mod made;
 mod rapid;
+mod ur;
