@@ -29,6 +29,10 @@ pub enum Dimension {
     RotationalSpeed,
     /// A frequency (Hz).
     Frequency,
+    /// The velocity of something by a force on it that swings ((m/s)/N).
+    Mobility,
+    /// The acceleration of something by a force on it that swings ((m/s^2)/N).
+    Accelerance,
     /// The feed of a mill per tooth (m).
     FeedPerTooth,
     /// A force per area, such as a cutting coefficient (Pa).
@@ -55,6 +59,8 @@ impl Dimension {
             Self::Speed => "m/s",
             Self::RotationalSpeed => "rad/s",
             Self::Frequency => "Hz",
+            Self::Mobility => "m/s/N",
+            Self::Accelerance => "m/s2/N",
             Self::FeedPerTooth => "m/tooth",
             Self::Pressure => "Pa",
             Self::LineForce => "N/m",

@@ -243,6 +243,8 @@ mod tests {
             ("5 ms", Time, 5e-3),
             ("1200 mm/min", Speed, 0.02),
             ("15 Hz", Frequency, 15.0),
+            ("2 mm/s/N", Mobility, 2e-3),
+            ("2 g/N", Accelerance, 19.6133),
             ("0.1 mm/tooth", FeedPerTooth, 1e-4),
             ("0.1 mm", FeedPerTooth, 1e-4),
             ("631 N/mm2", Pressure, 6.31e8),

@@ -29,6 +29,11 @@ impl Table<'_> {
         self.report(record.line, column.index, message, help);
     }
 
+    /// Reports a problem with a column of numbers, at its header.
+    pub fn report_column(&self, column: Numbers, message: &str, help: &str) {
+        self.report(self.header_line, column.index, message, help);
+    }
+
     /// Warns of something that is no problem for the reader.
     pub fn warn(&self, message: &str) {
         self.warnings.borrow_mut().push(format!("{}: {message}", self.file));

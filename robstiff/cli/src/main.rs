@@ -26,6 +26,7 @@ mod import;
 mod input;
 mod json;
 mod map;
+mod modes;
 mod online;
 mod output;
 mod path;

@@ -412,6 +412,60 @@ fn measured_modes_stand_in_place_of_the_mass() {
     assert!(said.contains("modes.yaml:3:") && said.contains("above 0 and below 1"), "{said}");
 }
 
+/// The modes of the sample's responses are those that it was made from, and what is printed of them is a table.
+#[test]
+fn responses_stand_in_place_of_the_modes() {
+    let folder = folder("machining-responses");
+    let [told, table, again, made] =
+        ["told.json", "table.yaml", "again.json", "made.json"].map(|name| inside(&folder, name));
+    let (cut, responses) = (file("roughing.yaml"), file("hammer.yaml"));
+    let asked = ["stability", "kuka-kr270-r2700", &cut, "--at", "0,-90 deg,90 deg,0,60 deg,0", "--modes"];
+    let page = succeed(&[&asked[..], &[&responses, "--json", &told]].concat());
+    assert!(page.contains("Modes fitted to 6 responses at 226 lines from 5 to 50 Hz; they leave "), "{page}");
+    let (printed, _) = page.split_once("modes:\n").unwrap().1.split_once("\n\n").unwrap();
+    fs::write(&table, format!("modes:\n{printed}\n")).unwrap();
+    succeed(&[&asked[..], &[&table, "--json", &again]].concat());
+    let truth = fs::read_to_string(file("modes.yaml")).unwrap();
+    let massless = "massless: [{stiffness: 7 N/um, direction: [0.3, 0.2, 0.9]}]\n";
+    fs::write(&table, format!("{massless}{truth}")).unwrap();
+    succeed(&[&asked[..], &[&table, "--json", &made]].concat());
+    let [told, again, made] = [told, again, made].map(|path| json(&path));
+    assert!(made["fit"].is_null() && told["fit"]["modes"].as_array().unwrap().len() == 3, "{}", told["fit"]);
+    assert!((told["fit"]["left"].as_f64().unwrap() - 0.01).abs() < 3e-3, "{}", told["fit"]);
+    for (found, expected) in told["fit"]["modes"].as_array().unwrap().iter().zip([14.6, 17.9, 28.3]) {
+        assert!((found["frequency_Hz"].as_f64().unwrap() / expected - 1.0).abs() < 5e-3, "{found}");
+    }
+    for angle in [0.0, 30.0, 90.0, 180.0] {
+        for key in ["limiting_depth_m", "at_any_speed_m", "without_delay_m"] {
+            let [found, printed, expected] = [&told, &again, &made].map(|told| depth(told, angle, key));
+            let Some(expected) = expected else {
+                assert_eq!([found, printed], [None; 2], "{angle} {key}");
+                continue;
+            };
+            let [found, printed] = [found, printed].map(Option::unwrap);
+            assert!((found / printed - 1.0).abs() < 5e-3, "{angle} {key}: {found} {printed}");
+            assert!((found / expected - 1.0).abs() < 0.05, "{angle} {key}: {found} {expected}");
+        }
+    }
+    // They are not overwritten.
+    let hammer = file("hammer.csv");
+    let said = fail(1, &[&asked[..], &[&responses, "--json", &hammer]].concat());
+    assert!(said.contains("hammer.csv is one of the files that were read"), "{said}");
+
+    let [yaml, csv] = ["hammer.yaml", "hammer.csv"].map(|name| inside(&folder, name));
+    let [text, values] = [&responses, &hammer].map(|path| fs::read_to_string(path).unwrap());
+    fs::write(&csv, &values).unwrap();
+    for (from, to, said) in [
+        ("accelerance", "receptance", "hammer.csv:1:16"),
+        ("  to: 50 Hz", "  to: 50 Hz\n  modes: 20", "hammer.yaml:6:10"),
+        ("to: 50 Hz", "to: 5.5 Hz", "1 mode needs 7 lines, and 3 are in the band"),
+    ] {
+        fs::write(&yaml, text.replace(from, to)).unwrap();
+        let complaint = fail(1, &[&asked[..], &[&yaml]].concat());
+        assert!(complaint.contains(said), "{from}: {complaint}");
+    }
+}
+
 /// Where nothing chatters up to the greatest depth there is no number, and no infinity.
 #[test]
 fn a_feed_without_a_limit_has_none() {

@@ -32,7 +32,7 @@ fn kind_of(file: &Value) -> Option<&'static str> {
         () if has("convention") => Some("robot"),
         () if has("seed") && has("poses") => Some("scenario"),
         () if has("depth") || has("measured") && has("speed") => Some("cut"),
-        () if has("modes") => Some("modes"),
+        () if has("modes") || has("responses") => Some("modes"),
         () if has("robot") && has("spindle") => Some("cell"),
         () if has("positions") || has("joints") => Some("map"),
         () => None,
@@ -124,6 +124,18 @@ fn what_is_wrong_in_shape_is_refused() {
             MODES,
             "modes: [{frequency: 15.2 Hz, damping: 0.03, stiffness: 0.8 N/um, direction: [1, 0, 0]}]",
             "modes: [{frequency: 15.2 Hz, damping: 0.03, stiffness: 0.8, direction: [1, 0, 0]}]",
+        ),
+        (
+            "modes",
+            MODES,
+            "responses: {file: hammer.csv, measured: accelerance, from: 5 Hz, modes: 4}",
+            "responses: {file: hammer.csv, measured: acceleration, from: 5 Hz, modes: 4}",
+        ),
+        (
+            "modes",
+            "frame: base\nmodes: [{frequency: 15.2 Hz, damping: 0.03, stiffness: 0.8 N/um, direction: [1, 0, 0]}]\n",
+            "massless: [{stiffness: 20 N/um, direction: [0, 0, 1]}]",
+            "responses: {file: hammer.csv, measured: accelerance}",
         ),
         ("map", MAP, "joints: [0, {from: 0 deg, to: 90 deg, count: 50}]", "joints: [0, {from: 0 deg, to: 90 deg}]"),
         (

@@ -15,6 +15,7 @@ use serde_json::{Value, json};
 use crate::failure::Failure;
 use crate::input::{Setup, ratio};
 use crate::json::number;
+use crate::modes;
 use crate::output::Files;
 use crate::text::{Table, count, decimals, significant};
 
@@ -70,8 +71,9 @@ impl ChatterArguments {
         let source = match (self.damping, &self.modes) {
             (Some(damping), _) => Source::Links(setup.robot.links.clone(), damping),
             (None, Some(path)) => {
-                files.protect(path);
-                Source::Table(ModesFile::read(path)?, path.display().to_string())
+                let file = modes::read(path)?;
+                modes::protect(files, path, &file);
+                Source::Table(file, path.display().to_string())
             }
             (None, None) => return Ok(None),
         };
@@ -121,7 +123,9 @@ impl ChatterRequest {
             Source::Links(_, damping) => {
                 format!("modes by the masses of the links, damping ratio {}", significant(*damping, 3))
             }
-            Source::Table(_, file) => format!("modes of {file}, the same all along the path"),
+            Source::Table(table, file) => {
+                format!("modes of {file}, the same all along the path{}", modes::fitted(table))
+            }
         };
         Ok(Chatter { modes, places })
     }

@@ -20,7 +20,7 @@ use serde_json::{Value, json};
 use crate::failure::Failure;
 use crate::input::{Setup, axis, positive, ratio, whole};
 use crate::output::{self, Files};
-use crate::{forces, input, json};
+use crate::{forces, input, json, modes};
 use lobes::Lobe;
 
 /// The depths of cut at which the arm chatters, by direction of feed and spindle speed
@@ -43,7 +43,8 @@ pub struct Arguments {
     /// The frequency of the arm's first mode as measured in this pose, e.g. "15 Hz"; by the links' masses where left out
     #[arg(long, value_name = "FREQUENCY", allow_hyphen_values = true, value_parser = positive(Dimension::Frequency))]
     frequency: Option<f64>,
-    /// The modes of the tool on the arm as measured in this pose: frequency, damping, stiffness and direction of each
+    /// The modes of the tool on the arm as measured in this pose: frequency, damping, stiffness and direction of each,
+    /// or the frequency responses to which they are fitted
     #[arg(long, value_name = "MODES.yaml", conflicts_with_all = ["frequency", "damping"])]
     modes: Option<PathBuf>,
     /// The damping ratio of the arm's modes; without it, the arm is taken to have no damping
@@ -95,6 +96,8 @@ pub struct Predicted {
     /// Of the arm without load, where a hammer finds them.
     modes: Modes,
     source: Source,
+    /// The table that they come from.
+    table: Option<ModesFile>,
     /// Whether the arm under the cut is another: backlash or hardening.
     stiffens: bool,
     /// From the spindle to the tip, in the base frame.
@@ -110,7 +113,7 @@ pub struct Predicted {
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let (robot, behind) = (arguments.robot.as_ref(), arguments.cut.as_ref());
     let (mut setup, given) = arguments.cell.setup(robot, behind, "robstiff stability CUT.yaml")?;
-    let measured = arguments.modes.as_ref().map(ModesFile::read).transpose()?;
+    let measured = arguments.modes.as_deref().map(modes::read).transpose()?;
     // What was measured needs no compliance of the description.
     if measured.is_none() {
         input::refuse_if_rigid(&setup.robot, "`robstiff stability`")?;
@@ -145,7 +148,9 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let mut files = Files::default();
     setup.protect(&mut files);
     forces::protect(&mut files, &cut_path, &file);
-    arguments.modes.iter().for_each(|path| files.protect(path));
+    if let (Some(path), Some(file)) = (&arguments.modes, &measured) {
+        modes::protect(&mut files, path, file);
+    }
     files.foresee(arguments.out.iter().chain(&arguments.json))?;
     let predicted = with_arm!(robot, |arm| predict(
         &arm,
@@ -229,7 +234,8 @@ fn predict<const N: usize>(
     let mass = first.or_else(|| modes.mass());
     let of_spindle = setup.cell().and_then(|cell| cell.spindle.as_ref()?.speeds);
     let lobes = lobes::over_speeds(&feeds, cut, lobes::speeds(arguments.speeds.or(of_spindle), speed));
-    Ok(Predicted { mass, modes, source, stiffens, axis, greatest, feeds, lobes })
+    let table = measured.cloned();
+    Ok(Predicted { mass, modes, source, table, stiffens, axis, greatest, feeds, lobes })
 }
 
 /// The stiffness of the softest direction (N/m); `None` where all are rigid.
@@ -275,6 +281,7 @@ fn document(predicted: &Predicted, robot: &Description, cut: &Cut, q: &[f64]) ->
         // Of all modes, where it is the same.
         "damping": alike(&predicted.modes),
         "dampings": json::numbers(predicted.modes.damping().iter().copied()),
+        "fit": predicted.table.as_ref().map(modes::document),
         "tool_axis": json::numbers(predicted.axis.iter().copied()),
         "speed_rad_per_s": cut.speed.map(json::number),
         "teeth_Hz": cut.tooth_period().map(|period| json::number(period.recip())),

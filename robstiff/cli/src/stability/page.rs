@@ -9,6 +9,7 @@ use robstiff_machining::stability::{Limits, best};
 use robstiff_robots::Description;
 
 use super::{Predicted, Source, alike, softest};
+use crate::modes;
 use crate::text::{Table, decimals, significant};
 
 /// What a prediction says, and what it does not.
@@ -56,6 +57,7 @@ pub fn page(predicted: &Predicted, robot: &Description, cut: &Cut) -> String {
         page += "without damping a movement that the cut feeds at all grows at any depth: give the measured ratio, e.g. \
                  --damping 0.02\n";
     }
+    page += &predicted.table.as_ref().map(modes::page).unwrap_or_default();
     page += &format!("\nDepth at which it begins, by feed (up to {} mm looked at)\n", millimetres(predicted.greatest));
     page += &feeds(predicted);
     if predicted.stiffens {

@@ -17,6 +17,23 @@ pub struct MeasuredMode {
     pub direction: Vector3<f64>,
 }
 
+/// What gives way at once, without mass, along a direction.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Spring {
+    /// Its stiffness along the direction (N/m).
+    pub stiffness: f64,
+    /// Where it gives way; the length does not count.
+    pub direction: Vector3<f64>,
+}
+
+impl Spring {
+    /// Its compliance (m/N); not finite where the direction has no length.
+    pub fn compliance(&self) -> Matrix3<f64> {
+        let along = self.direction / self.direction.norm();
+        along * along.transpose() / self.stiffness
+    }
+}
+
 impl Modes {
     /// The modes of a modal test, in any order: each is a spring `k` with a mass `k / w^2` and a
     /// damper of its own, which moves the tool along a direction `d` (a unit vector). The shape
@@ -50,5 +67,20 @@ impl Modes {
             massless: Matrix3::zeros(),
             damping: DVector::from_iterator(ordered.len(), ordered.iter().map(|mode| mode.damping)),
         })
+    }
+
+    /// The same on springs without mass, which stand for the modes that are quicker. `None` where one has no
+    /// stiffness above zero, or no direction.
+    #[must_use]
+    pub fn with_massless(mut self, springs: &[Spring]) -> Option<Self> {
+        for spring in springs {
+            let compliance = spring.compliance();
+            if !(spring.stiffness > 0.0 && compliance.iter().all(|entry| entry.is_finite())) {
+                return None;
+            }
+            self.compliance += compliance;
+            self.massless += compliance;
+        }
+        Some(self)
     }
 }

@@ -24,7 +24,8 @@
 //! - The arm's elasticity at one pose, with one mass at the tool by the 3 x 3
 //!   translational block of its compliance ([`Modes::new`]), or with the links'
 //!   masses by all that yields ([`Modes::of_links`]): the TCP is free to turn. Or as a modal
-//!   test finds them, each with its damping ([`Modes::measured`]).
+//!   test finds them, each with its damping ([`Modes::measured`]), or as they are fitted to the frequency
+//!   responses of such a test ([`responses`]).
 //!   Directions in which it does not yield at all are rigid and take no part. Backlash and hardening have the slope that
 //!   they have under the mean force of the cut, see [`over_feeds`] and
 //!   [`compliance_under`](robstiff::elements::compliance_under): movements that cross
@@ -55,6 +56,9 @@ mod measured;
 mod measured_tests;
 mod modes;
 mod response;
+pub mod responses;
+#[cfg(test)]
+mod responses_tests;
 #[cfg(feature = "schema")]
 pub mod schema;
 mod spectrum;
@@ -66,5 +70,5 @@ pub use file::{ModesFile, ModesFrame};
 pub use limit::Limits;
 pub use lobes::Lobes;
 pub use mass::{MassError, mass_of_first_mode};
-pub use measured::MeasuredMode;
+pub use measured::{MeasuredMode, Spring};
 pub use modes::{Modes, has_complex_pair};
