@@ -194,10 +194,15 @@ impl Responses {
     }
 
     /// The places in [`all`](Self::all) of those along their force that no structure has: swinging with them it
-    /// would give power to the hammer.
+    /// would give power to the hammer, by more than twice what chance makes of signs that mean nothing.
     pub fn impossible(&self) -> impl Iterator<Item = usize> {
-        let power = |response: &Response| response.values.iter().map(|value| self.motion.power(*value)).sum::<f64>();
-        let is = move |response: &Response| response.directions[0] == response.directions[1] && power(response) < 0.0;
+        let takes = |response: &Response| {
+            let powers = response.values.iter().map(|value| self.motion.power(*value));
+            let (sum, squares) =
+                powers.fold((0.0, 0.0), |(sum, squares), power| (sum + power, squares + power * power));
+            sum < -2.0 * f64::sqrt(squares)
+        };
+        let is = move |response: &Response| response.directions[0] == response.directions[1] && takes(response);
         self.all.iter().enumerate().filter(move |(_, response)| is(response)).map(|(place, _)| place)
     }
 }
