@@ -3,13 +3,14 @@
 use nalgebra::DVector;
 use robstiff_robots::Description;
 
-use crate::fit::readable::is_readable;
 use super::{Error, Estimate, Identification, NoiseSource};
 use crate::campaign::Campaign;
+use crate::effects::What;
 use crate::fit::case::Case;
 use crate::fit::estimate::name;
 use crate::fit::noise::known;
 use crate::fit::own::Alone;
+use crate::fit::readable::is_readable;
 
 /// How readings scatter about a fit.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -29,12 +30,7 @@ impl Scatter {
         let noise = &alone.engine.noise;
         let own = alone.solved.fit.variance.sqrt();
         let turns = alone.engine.observation.readings().channels.contains(&1);
-        Self {
-            own,
-            rotation: turns.then(|| own / noise.scales[1]),
-            shared: noise.shared,
-            growth: own * noise.growth,
-        }
+        Self { own, rotation: turns.then(|| own / noise.scales[1]), shared: noise.shared, growth: own * noise.growth }
     }
 }
 
@@ -56,6 +52,9 @@ pub fn identification(
         Some(known) => (known.size, known.source),
         None => (alone.solved.fit.variance.sqrt(), NoiseSource::Residuals),
     };
+    // Of a row that shares its unloaded reading with no other, both are in its noise.
+    let is_alone = case.scene.what == What::Displacements && case.scene.visits >= readings.rows();
+    let noise = if is_alone { noise * core::f64::consts::FRAC_1_SQRT_2 } else { noise };
     let outliers = alone.outliers();
     let rms = |left: &DVector<f64>| readings.rms(left, (0..readings.rows()).filter(|row| !outliers.contains(row)));
     Ok(Identification {

@@ -282,7 +282,7 @@ impl<'c> Displacement<'c> {
     }
 
     /// What the arm's yielding reads, to first order.
-    fn yielded(&self, world: &World, parameters: &[Parameter], values: &[f64]) -> DVector<f64> {
+    pub fn yielded(&self, world: &World, parameters: &[Parameter], values: &[f64]) -> DVector<f64> {
         let world = changed(world, parameters, values);
         let loaded = self.loaded(&world, parameters, values);
         let yielding = sum(parameters, values, (&loaded, &self.sequence), &self.encoders);
@@ -301,7 +301,7 @@ impl<'c> Displacement<'c> {
     }
 
     /// What large loads make of the arm's shape; nothing where by these springs it is [too much](MOST) in most rows.
-    fn second_order(&self, world: &World, parameters: &[Parameter], values: &[f64]) -> DVector<f64> {
+    pub fn second_order(&self, world: &World, parameters: &[Parameter], values: &[f64]) -> DVector<f64> {
         let world = changed(world, parameters, values);
         let own = own_springs(parameters, values, self.kinds.len());
         let loaded = self.loaded(&world, &[], &[]);
@@ -309,10 +309,11 @@ impl<'c> Displacement<'c> {
             let at = loaded.station[row];
             let rest = (&loaded.stands[at], self.data.rows[row].q.as_slice(), [].as_slice());
             let beyond = beyond_linear(&world, (&self.kinds, &own), rest, &loaded.wrenches[row], &loaded.twists[at]);
-            let linear = own.iter().enumerate().map(|(joint, h)| loaded.twist(row, joint) * (h * loaded.torques[joint][row]));
+            let linear =
+                own.iter().enumerate().map(|(joint, h)| loaded.twist(row, joint) * (h * loaded.torques[joint][row]));
             let linear: Vector6<f64> = linear.sum();
-            let at_marker = linear.fixed_rows::<3>(0)
-                + linear.fixed_rows::<3>(3).cross(&world.rig.marker(&loaded.stands[at].tcp));
+            let at_marker =
+                linear.fixed_rows::<3>(0) + linear.fixed_rows::<3>(3).cross(&world.rig.marker(&loaded.stands[at].tcp));
             let length = beyond.moved.fixed_rows::<3>(0).norm();
             (length <= MOST * at_marker.norm(), beyond)
         };

@@ -179,7 +179,8 @@ impl Engine<'_> {
             pass += 1;
             let moved = before.iter().zip(&self.noise.weights).map(|(a, b)| (a / b).ln().abs()).fold(0.0, f64::max);
             // What is missing may be more than any search would leave; a row a pose does not tell it from noise.
-            let is_most = self.noise.spares_others && kappa > 0 && kappa == last_kappa && readings.blocks < readings.rows();
+            let is_most =
+                self.noise.spares_others && kappa > 0 && kappa == last_kappa && readings.blocks < readings.rows();
             if is_most && pass < SETTLING {
                 self.noise.lack *= LACKS_MORE;
                 continue;

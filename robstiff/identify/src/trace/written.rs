@@ -9,8 +9,8 @@ use robstiff_robots::{Description, Effect};
 use super::found::Found;
 use crate::campaign::Campaign;
 use crate::fit::estimate::{Estimate, with_values};
-use crate::identify::Error;
 use crate::fit::readable::is_readable;
+use crate::identify::Error;
 use crate::select::always::{Declared, Own};
 use robstiff_robots::DhEntry;
 

@@ -12,12 +12,12 @@ use robstiff_robots::effect::physics::PLAYS;
 
 use self::rounding::{loaded, of_rounding};
 use super::fitted::estimate;
-use crate::fit::readable::is_readable;
 use super::{Error, Estimate, Identification, Visibility};
 use crate::campaign::{Campaign, ClampedRow, Data};
 use crate::fit::case::Case;
 use crate::fit::estimate::{name, with_value};
 use crate::fit::own::Alone;
+use crate::fit::readable::is_readable;
 use crate::model::described::{Declared, declared};
 use robstiff::Effect;
 use robstiff::elements::{Torque, plays, turn};
