@@ -22,6 +22,7 @@ mod fit;
 pub mod identify;
 mod judge;
 mod model;
+mod noise;
 mod observe;
 pub mod plan;
 pub mod predict;

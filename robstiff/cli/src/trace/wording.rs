@@ -2,11 +2,10 @@
 
 use robstiff::JointKind;
 use robstiff_identify::campaign::{Campaign, Data};
-use robstiff_identify::trace::{
-    EffectParameter, Estimate, Found, NamedEffect, NoiseSource, Proposal, SUSPECTED, Trace, Verdict,
-};
+use robstiff_identify::trace::{EffectParameter, Estimate, Found, NamedEffect, Proposal, SUSPECTED, Trace, Verdict};
 use robstiff_robots::{Description, Effect, Joint};
 
+pub use crate::identify::source_of;
 use crate::report::terms::Terms;
 use crate::text::words::spoken;
 use crate::text::{and, capital, count, decimals};
@@ -95,16 +94,6 @@ pub fn name_of(trace: &Trace, estimate: &Estimate) -> String {
         number => number.strip_prefix(' ').map(|number| format!("{} ({number})", spoken(&name))),
     });
     of_effects.next().unwrap_or_else(|| estimate.name.clone())
-}
-
-/// Where the noise is known from.
-pub fn source_of(source: NoiseSource) -> &'static str {
-    match source {
-        NoiseSource::Declared => "as declared",
-        NoiseSource::Rounded => "as declared, which is below the step of the readings, and what rounding to it adds",
-        NoiseSource::Repetitions => "from repeated readings",
-        NoiseSource::Residuals => "from what the model leaves, so at most that",
-    }
 }
 
 /// The noise of what is read (m; of clamped axes, rad): of one reading, or of the difference of a loaded and

@@ -307,6 +307,9 @@ impl<'e> Alone<'e> {
     /// are as declared.
     pub fn left(&self, values: impl Fn(usize) -> f64) -> Option<DVector<f64>> {
         let mut layout = Layout { candidates: Vec::new(), forms: Vec::new(), ..self.engine.layout() };
+        let value = |changed, k: usize| with_value(changed, &self.own[k], values(k));
+        let fixed = fixed(&(0..self.own.len()).fold(self.engine.robot.clone(), value));
+        layout.parameters.splice(..fixed.len(), fixed);
         for k in layout.always() {
             let number = k - layout.fixed;
             let parameter = &mut layout.parameters[k];

@@ -3,15 +3,14 @@
 use std::format;
 use std::string::String;
 
-use super::covariance::Covariance;
 use super::fitted::identification;
-use super::samples::Samples;
-use super::second_order::straightened;
 use super::{Error, Identification, NoiseSource, less_than_rigid};
 use crate::campaign::{Campaign, Data, Displacements, Observation as Row, told_length};
 use crate::fit::case::Case;
 use crate::fit::noise::known;
 use crate::fit::own::Alone;
+use crate::noise::Covariance;
+use crate::noise::straight::straightened;
 use crate::words::{count, micrometres};
 
 /// What is said of readings whose noise hides every number.
@@ -67,7 +66,7 @@ fn something_was_read(data: &Displacements) -> Result<(), Error> {
 /// Whether the readings show far less noise than is declared.
 fn is_far_below(campaign: &Campaign, data: &Displacements) -> bool {
     let Some(declared) = campaign.noise.displacement.filter(|_| data.is_whole()) else { return false };
-    let samples = straightened(&Samples::of_description(&campaign.robot, data), &campaign.robot, |_| true);
+    let samples = straightened(&campaign.robot, data);
     Covariance::estimate(&samples, data.measured_frame, campaign.noise, |_| true).is_far_below(declared)
 }
 

@@ -5,6 +5,7 @@ use robstiff_robots::Description;
 
 use super::{Error, Estimate, Identification, NoiseSource};
 use crate::campaign::Campaign;
+use crate::effects::What;
 use crate::fit::case::Case;
 use crate::fit::estimate::name;
 use crate::fit::noise::known;
@@ -51,6 +52,9 @@ pub fn identification(
         Some(known) => (known.size, known.source),
         None => (alone.solved.fit.variance.sqrt(), NoiseSource::Residuals),
     };
+    // Of a row that shares its unloaded reading with no other, both are in its noise.
+    let is_alone = case.scene.what == What::Displacements && case.scene.visits >= readings.rows();
+    let noise = if is_alone { noise * core::f64::consts::FRAC_1_SQRT_2 } else { noise };
     let outliers = alone.outliers();
     let rms = |left: &DVector<f64>| readings.rms(left, (0..readings.rows()).filter(|row| !outliers.contains(row)));
     Ok(Identification {

@@ -4,26 +4,20 @@
 //! It is the fit of `fit/own.rs`, put together by `fitted`: `displacement`, `positions` and `clamped` refuse what
 //! each kind of campaign does not show; `scale` and `misread` say what looks like a mistake in files.
 
-pub(crate) mod baseline;
 pub(crate) mod clamped;
-pub(crate) mod column;
-pub(crate) mod covariance;
+#[cfg(test)]
+mod coverage_tests;
 pub(crate) mod displacement;
 pub(crate) mod fitted;
 #[cfg(test)]
 mod held_tests;
 pub(crate) mod misread;
-pub(crate) mod noise;
-pub(crate) mod normal;
 pub(crate) mod positions;
-pub(crate) mod samples;
 pub(crate) mod scale;
-pub(crate) mod second_order;
 #[cfg(test)]
 mod tests;
 #[cfg(test)]
 mod told_tests;
-pub(crate) mod whitening;
 
 use core::fmt;
 use std::format;

@@ -4,15 +4,14 @@ use std::vec;
 
 use nalgebra::{DVector, Vector3, Vector6};
 
-use super::covariance::Covariance;
-use super::covariance::contrasts::Level;
-use super::samples::Samples;
-use super::second_order::beyond_linear;
 use super::*;
 use crate::campaign::made::Plan;
-use crate::campaign::{Displacements, Frame, Noise, Observation, made};
+use crate::campaign::{Displacements, Frame, Observation, made};
 use crate::fit::estimate::with_value;
-use crate::model::described::{Own, declared};
+use crate::model::described::{Own, as_declared, declared};
+use crate::observe::Observation as _;
+use crate::observe::displacement::Displacement;
+use crate::predict::predict;
 use robstiff::{Convention, Effect, Generic, Robot};
 use robstiff_robots::samples::{arm, five_axis};
 
@@ -161,7 +160,7 @@ fn no_effect_is_left_out_of_the_regression() {
         let begins = matches!(effect, Effect::GravityPreload { .. });
         let with = Description { effects: vec![effect], ..five_axis() };
         let is_fitted = declared(&with).iter().any(|own| matches!(own.what, Own::Effect(..)));
-        assert!(begins || is_fitted || samples::is_share(&effect), "{effect}");
+        assert!(begins || is_fitted || matches!(effect, Effect::PoseDependentCompliance { .. }), "{effect}");
     }
 }
 
@@ -232,7 +231,9 @@ fn the_second_order_is_that_of_a_lever() {
             motors: None,
         }],
     };
-    let beyond = beyond_linear(&Samples::of_description(&description, &data), &[h]);
+    let observation = Displacement::new(&description, &data);
+    let (parameters, values) = as_declared(&description);
+    let beyond = observation.second_order(observation.world(), &parameters, &values);
     let mut angle: f64 = 0.0;
     for _ in 0..20 {
         angle = h * force * length * angle.cos();
@@ -278,31 +279,6 @@ fn joints_that_look_alike_are_not_both_lost() {
     assert_eq!(seen(Plan { visits: 1, ramp: vec![1.0], ..plan }), 1);
 }
 
-/// Repetitions see the scatter between readings of one load, not the load.
-#[test]
-fn repetitions_give_the_noise() {
-    let mut campaign = campaign(&five_axis(), five_axis(), Frame::Base, [0.0; 3], false);
-    let Data::Displacement(data) = &mut campaign.data else { unreachable!("made above") };
-    let twins: Vec<Observation> = data.rows.clone();
-    for (i, mut twin) in twins.into_iter().enumerate() {
-        // Rows without a visit of their own in common have each its unloaded
-        // reading: a difference of 2 s has the variance of 4 readings, s^2.
-        twin.visit = 30 + i;
-        twin.displacement.iter_mut().for_each(|d| *d += 2e-5);
-        data.rows.push(twin);
-    }
-    data.visits = (0..60).map(|i| format!("{i}")).collect();
-    let samples = Samples::of_description(&five_axis(), data);
-    let covariance = Covariance::estimate(&samples, Frame::Base, Noise::default(), |_| true);
-    let without = |left_out: &[usize]| {
-        let left_out = left_out.to_vec();
-        covariance.pure_error(&samples, Level::Repeated, |_| true, move |row| left_out.contains(&row))
-    };
-    let found = without(&[]);
-    assert_eq!((found.freedom, without(&[3, 34, 40]).freedom), (90, 81));
-    assert!((found.variance().expect("enough repetitions").sqrt() - 1e-5).abs() < 1e-12);
-}
-
 /// A robot that was imported is rigid: its compliances have no declared value to be held to.
 #[test]
 fn wrong_signs_are_told_of_a_rigid_robot_too() {
@@ -345,4 +321,38 @@ fn poses_held_out_have_no_part_in_the_fit() {
     };
     assert!(fitted_to.iter().any(|fitted| !fitted));
     assert_eq!(estimates(1.0), estimates(20.0));
+}
+
+/// What is told of the error is that of the description that is written.
+#[test]
+fn the_error_is_that_of_the_description() {
+    let robot = {
+        let mut robot = stiffer(&five_axis());
+        robot.effects = vec![Effect::PoseDependentCompliance { joint: 2, cos1: 0.4, sin1: 0.2, cos2: 0.0, sin2: 0.0 }];
+        robot
+    };
+    for robot in [stiffer(&five_axis()), robot] {
+        let campaign = Campaign { robot, ..Plan::new(8).run() };
+        let found = identify(&campaign).expect("all joints are seen");
+        assert!(found.left_out.is_empty());
+        for (robot, rms) in [(&campaign.robot, found.rms_declared), (&found.description, found.rms)] {
+            let predicted = predict(robot, &campaign).expect("of the same robot").rms;
+            assert!(rms.is_some_and(|rms| (rms / predicted - 1.0).abs() < 1e-6), "{rms:?} {predicted}");
+        }
+    }
+}
+
+/// A dial gauge shows less, and what it shows is right.
+#[test]
+fn one_direction_shows_joints_too() {
+    let plan = Plan::new(8);
+    let mut campaign = plan.run();
+    let Data::Displacement(data) = &mut campaign.data else { unreachable!("displacements were planned") };
+    data.directions = vec![[0.0, 0.0, 1.0]];
+    data.rows.iter_mut().for_each(|row| row.displacement = [0.0, 0.0, row.displacement[2]]);
+    let found = identify(&campaign).expect("joints are seen");
+    let joints = found.estimates.iter().zip(&plan.robot.joints);
+    let off: Vec<f64> =
+        joints.filter_map(|(found, truth)| Some((found.value - truth.compliance()) / found.std?)).collect();
+    assert!(off.len() >= 3 && off.iter().all(|off| off.abs() < 3.5), "{off:?}");
 }

@@ -282,7 +282,7 @@ impl<'c> Displacement<'c> {
     }
 
     /// What the arm's yielding reads, to first order.
-    fn yielded(&self, world: &World, parameters: &[Parameter], values: &[f64]) -> DVector<f64> {
+    pub fn yielded(&self, world: &World, parameters: &[Parameter], values: &[f64]) -> DVector<f64> {
         let world = changed(world, parameters, values);
         let loaded = self.loaded(&world, parameters, values);
         let yielding = sum(parameters, values, (&loaded, &self.sequence), &self.encoders);
@@ -301,7 +301,7 @@ impl<'c> Displacement<'c> {
     }
 
     /// What large loads make of the arm's shape; nothing where by these springs it is [too much](MOST) in most rows.
-    fn second_order(&self, world: &World, parameters: &[Parameter], values: &[f64]) -> DVector<f64> {
+    pub fn second_order(&self, world: &World, parameters: &[Parameter], values: &[f64]) -> DVector<f64> {
         let world = changed(world, parameters, values);
         let own = own_springs(parameters, values, self.kinds.len());
         let loaded = self.loaded(&world, &[], &[]);

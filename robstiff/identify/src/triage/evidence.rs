@@ -6,10 +6,9 @@ use std::vec::Vec;
 use nalgebra::{Vector3, Vector6};
 
 use crate::campaign::{Campaign, Displacements, Frame};
-use crate::identify::covariance::{Covariance, Tails};
-use crate::identify::samples::Samples;
-use crate::identify::second_order::straightened;
-use crate::identify::whitening::mean_share;
+use crate::noise::samples::{Sample, Samples};
+use crate::noise::straight::straightened;
+use crate::noise::{Covariance, Tails, mean_share};
 
 /// A load below this share of the largest at its pose is none.
 pub const UNLOADED: f64 = 0.01;
@@ -74,7 +73,7 @@ pub struct Contrast {
 impl<'c> Evidence<'c> {
     /// The evidence of a campaign of displacements.
     pub fn new(campaign: &'c Campaign, data: &'c Displacements) -> Self {
-        let samples = straightened(&Samples::of_description(&campaign.robot, data), &campaign.robot, |_| true);
+        let samples = straightened(&campaign.robot, data);
         let (covariance, tails) =
             Covariance::estimate_with_tails(&samples, data.measured_frame, campaign.noise, |_| true);
         let (lines, unloaded) = lines(&samples);
@@ -207,7 +206,7 @@ fn lines(samples: &Samples) -> (Vec<Line>, Vec<usize>) {
 }
 
 fn wrenches(samples: &Samples) -> Option<Vec<Vector6<f64>>> {
-    let about_marker = |row: &crate::identify::samples::Sample| {
+    let about_marker = |row: &Sample| {
         let force: Vector3<f64> = row.wrench.fixed_rows::<3>(0).into_owned();
         let moment = row.wrench.fixed_rows::<3>(3) - row.marker.cross(&force);
         Vector6::new(force.x, force.y, force.z, moment.x, moment.y, moment.z)

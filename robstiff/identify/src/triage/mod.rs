@@ -38,7 +38,7 @@ use std::vec::Vec;
 
 use self::evidence::Evidence;
 use crate::campaign::{Campaign, Data};
-use crate::identify::covariance::tails;
+use crate::noise::tails;
 use crate::probability::told;
 
 /// The probability that anything is found where nothing is wrong.

@@ -6,8 +6,8 @@ use std::vec::Vec;
 
 use super::evidence::Evidence;
 use super::{Raw, Stray, Unjudged};
-use crate::identify::covariance::contrasts::Level;
-use crate::identify::covariance::{Outlier, WILD};
+use crate::noise::contrasts::Level;
+use crate::noise::{Outlier, WILD};
 use crate::probability::chi_square_tail;
 use crate::words::{count, micrometres};
 
@@ -120,8 +120,7 @@ pub(super) fn outliers(evidence: &Evidence<'_>) -> Unjudged {
                 format!("{} stands out, not beyond doubt.", count(wild.len(), "reading"))
             },
             format!(
-                "{} {} not belong to the others; see the list. They are left out of the estimate of the noise; what does \
-                 not belong beyond doubt, of fits, too.",
+                "{} {} not belong to the others; see the list. They are left out of the estimate of the noise.",
                 count(wild.len(), "reading"),
                 if wild.len() == 1 { "does" } else { "do" }
             ),

@@ -14,8 +14,8 @@ use nalgebra::DMatrix;
 use super::evidence::Evidence;
 use super::randomisation::{Witness, flip};
 use super::{Raw, Unjudged};
-use crate::identify::covariance::contrasts::{Chunk, Level, contrasts};
-use crate::identify::samples::Samples;
+use crate::noise::contrasts::{Chunk, Level, contrasts};
+use crate::noise::samples::Samples;
 use crate::words::micrometres;
 
 /// A drift over its whole range below this share of a reading's noise does not

@@ -9,9 +9,13 @@ use robstiff_robots::Description;
 use super::mistakes::of_displacements;
 use super::{Left, Misread, ROWS};
 use crate::campaign::Displacements;
-use crate::identify::baseline::declared;
-use crate::identify::normal::{Normal, independent};
-use crate::identify::samples::Samples;
+use crate::model::described::declared;
+use crate::model::{Parameter, Sign};
+use crate::observe::Observation;
+use crate::observe::displacement::Displacement;
+
+/// Directions of columns of one length that are so much smaller than the largest say nothing.
+const ALIKE_COLUMNS: f64 = 1e-7;
 
 /// What the files of displacements may have been written with: what leaves, where it is undone, no
 /// more than a part of what a model leaves of some rows (m, the root mean square of one axis), both
@@ -40,16 +44,33 @@ pub fn in_displacements(
 /// What the description's own numbers leave; `None` where the rows show none of them. What is not
 /// linear in the load, a thousandth of it, is not asked for.
 fn left_by(robot: &Description, data: &Displacements) -> Option<Left> {
-    let samples = Samples::of_description(robot, data).without_encoders();
-    let displacements = |stacked: &DVector<f64>| {
-        let of_row = |row: usize| stacked.as_slice()[row * samples.axes..][..3].to_vec();
-        DVector::from_vec((0..samples.rows.len()).flat_map(of_row).collect())
-    };
+    let observation = Displacement::new(robot, data);
     let own = declared(robot);
-    let columns: Vec<DVector<f64>> = own.iter().map(|number| displacements(&samples.column(number.column))).collect();
-    let normal = Normal::new(&DMatrix::from_columns(&columns), &displacements(&samples.readings()));
-    let (kept, _) = independent(&normal.gram, &(0..own.len()).collect::<Vec<usize>>(), 0.0);
-    let signs = kept.iter().map(|&k| own[k].sign).collect::<Vec<_>>();
-    let fit = normal.solve_signed(&kept, &signs)?;
-    Some(Left { squares: fit.rss, read: normal.energy, rows: samples.rows.len() })
+    let parameters: Vec<Parameter> = own.iter().map(|own| own.parameter.clone()).collect();
+    let all: Vec<usize> = (0..own.len()).collect();
+    let columns = observation.columns(observation.world(), &parameters, &vec![0.0; own.len()], &all);
+    let readings = observation.readings();
+    let displacements = |stacked: &DVector<f64>| {
+        let of_row = |row: usize| stacked.as_slice()[row * readings.width..][..readings.reported].to_vec();
+        DVector::from_vec((0..readings.rows()).flat_map(of_row).collect())
+    };
+    let columns: Vec<DVector<f64>> = (0..own.len()).map(|k| displacements(&columns.column(k).into_owned())).collect();
+    let read = displacements(&readings.values);
+    let mut shown: Vec<usize> = all.into_iter().filter(|&k| columns[k].norm() > 0.0).collect();
+    loop {
+        if shown.is_empty() {
+            return None;
+        }
+        // Columns of one length: numbers have units of their own.
+        let scaled: Vec<DVector<f64>> = shown.iter().map(|&k| columns[k].normalize()).collect();
+        let design = DMatrix::from_columns(&scaled);
+        let numbers = design.clone().svd(true, true).solve(&read, ALIKE_COLUMNS).ok()?;
+        let is_negative = |at: usize| numbers[at] < 0.0 && own[shown[at]].parameter.sign == Sign::Nonnegative;
+        if !(0..shown.len()).any(is_negative) {
+            let left = &read - design * numbers;
+            return Some(Left { squares: left.norm_squared(), read: read.norm_squared(), rows: readings.rows() });
+        }
+        let kept = (0..shown.len()).filter(|&at| !is_negative(at)).map(|at| shown[at]).collect();
+        shown = kept;
+    }
 }

@@ -9,12 +9,10 @@
 //! visit; in the basis in which that is diagonal they are independent, each with
 //! the variance `v (1 + lambda s)`, `s` the share of the unloaded readings in it.
 
-use std::vec::Vec;
-
 use nalgebra::linalg::QR;
 use nalgebra::{DMatrix, SymmetricEigen};
 
-use super::super::samples::Samples;
+use super::samples::Samples;
 
 /// What is free at a pose, from little to much. The more is free, the fewer
 /// contrasts are left, and the less can hide in them.

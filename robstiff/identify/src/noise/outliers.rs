@@ -10,7 +10,6 @@
 
 use std::format;
 use std::string::String;
-use std::vec::Vec;
 
 use super::NOISELESS;
 use super::contrasts::Chunk;
@@ -50,14 +49,6 @@ impl Outlier {
         }
     }
 }
-
-/// The level over all rows at which a row is left out where what is left otherwise is
-/// noise. It is less than that of the other tests, for noise with a few larger values is
-/// common.
-pub const STRICT: f64 = 1e-3;
-
-/// More than this share of the rows is no matter of single rows.
-pub const FEW: f64 = 0.1;
 
 /// A shift that the free response at the pose takes up but for this fraction
 /// cannot be judged.

@@ -1,8 +1,6 @@
 //! Whether the noise is normal: the kurtosis of studentised residuals, against
 //! that of as many normal readings under the same poses and loads.
 
-use std::vec::Vec;
-
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use statrs::function::gamma::ln_gamma;

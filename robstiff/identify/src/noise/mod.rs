@@ -3,37 +3,33 @@
 //! The rows of one axis and one visit have the covariance `v_a (I + lambda 1 1^T)`:
 //! each axis its own variance `v_a`, in the frame it was measured in, and a share
 //! `lambda` of the unloaded reading that a visit's rows have in common. Readings tell it
-//! themselves ([`estimation`]); the regression is whitened by it ([`Whitener`]).
+//! themselves, before any model of the robot ([`estimation`]).
 
 pub mod contrasts;
-pub mod encoders;
 mod estimated;
 mod estimation;
 pub mod outliers;
 pub mod reml;
+mod repeated;
+pub mod samples;
+pub mod straight;
 pub mod tails;
 #[cfg(test)]
 mod tests;
-mod whitener;
 
 use std::sync::Arc;
-use std::vec::Vec;
 
-use nalgebra::{DMatrix, Matrix3};
+use nalgebra::{DMatrix, Matrix3, Vector3};
 
 use self::contrasts::{Chunk, Level, contrasts};
 use self::reml::{count, sums};
-use super::noise::PureError;
-use super::samples::{Sample, Samples};
-use super::whitening;
+use self::repeated::PureError;
+use self::samples::{Sample, Samples};
 use crate::campaign::{Frame, Noise};
 
-pub use encoders::EncoderNoise;
 pub use outliers::Outlier;
 pub use reml::Share;
 pub use tails::Tails;
-use whitener::turn;
-pub use whitener::{Whitener, alone};
 
 /// Level at which more is freed at a pose.
 pub const NESTED: f64 = 0.01;
@@ -61,8 +57,6 @@ const FAR_ABOVE: f64 = 3.0;
 pub enum Basis {
     /// Contrasts within poses, with so much free at each.
     Contrasts(Level),
-    /// What a model leaves.
-    Model,
     /// Nothing: equal axes, and one unloaded reading a visit.
     Assumed,
 }
@@ -88,12 +82,7 @@ pub struct Covariance {
     pub unequal: bool,
     /// The readings that were set aside.
     pub outliers: Vec<Outlier>,
-    /// The noise of encoders on the output side of the gears, where they are read
-    /// and it is known.
-    pub encoders: Option<EncoderNoise>,
     visits: Vec<usize>,
-    /// How many rows were asked for readings that do not belong.
-    asked: usize,
     /// From the base frame to that measured in, a row each.
     turns: Option<Arc<[Matrix3<f64>]>>,
 }
@@ -112,20 +101,9 @@ impl Covariance {
             equal_axes: None,
             unequal: false,
             outliers: Vec::new(),
-            encoders: None,
             visits: samples.visits(),
-            asked: 0,
             turns: (frame == Frame::Tool).then(|| samples.rows.iter().map(to_tool).collect()),
         }
-    }
-
-    /// The readings that [certainly](outliers::STRICT) do not belong; none where that is no
-    /// matter of [single rows](outliers::FEW) of those that were asked.
-    pub(crate) fn beyond_doubt(&self) -> Vec<Outlier> {
-        let mut wild = self.outliers.clone();
-        wild.retain(|outlier| outlier.p_value <= outliers::STRICT);
-        let rows: usize = wild.iter().map(|outlier| outlier.rows.len()).sum();
-        if rows as f64 > outliers::FEW * self.asked as f64 { Vec::new() } else { wild }
     }
 
     /// Axes per row.
@@ -140,11 +118,6 @@ impl Covariance {
         (self.basis != Basis::Assumed).then(|| self.reference(0..3))
     }
 
-    /// The same of a rotation reading (rad), where there are any.
-    pub fn rotation_reading(&self) -> Option<f64> {
-        (self.basis != Basis::Assumed && self.axes() > 3).then(|| self.reference(3..6))
-    }
-
     /// Whether declared noise of a displacement reading (m) is another instrument's, or in
     /// another unit: far above what the readings say. Less than they say may be right, for
     /// what is no function of the load makes them differ, too; and readings [made by a
@@ -154,8 +127,7 @@ impl Covariance {
     }
 
     /// What displacements leave where so much is free at each pose for which
-    /// `of_pose` holds, without the rows for which `without` holds, whitened like
-    /// [`whitener`](Self::whitener) does. A model of the robot that is free of no more
+    /// `of_pose` holds, without the rows for which `without` holds, whitened. A model of the robot that is free of no more
     /// leaves at least as much of the same rows.
     pub(crate) fn pure_error(
         &self,
@@ -191,49 +163,38 @@ impl Covariance {
         self.own[axis].powi(2) * (own + self.shared * common)
     }
 
-    /// What turns stacked columns ([`Samples::readings`]) to the frame measured in,
-    /// whitens them, and brings all axes to the unit of displacements: the rows of
-    /// whitened readings are independent, and each has the variance of one
-    /// displacement reading, [`reading`](Self::reading) squared. A row left out
-    /// shares its unloaded reading with nothing that is used.
-    pub(crate) fn whitener(&self, left_out: &[bool]) -> Whitener {
-        let visits = alone(&self.visits, left_out);
-        let of_encoders = |noise: &EncoderNoise| (noise.by_group(left_out), self.scale(&noise.own));
-        Whitener {
-            turns: self.turns.clone(),
-            by_visit: whitening::ByVisit::new(&visits, self.shared),
-            scale: self.scale(&self.own),
-            rows: visits.len(),
-            encoders: self.encoders.as_ref().map(of_encoders),
-        }
-    }
-
-    /// What brings readings that have so much noise to themselves to the unit of displacements.
-    fn scale(&self, own: &[f64]) -> Vec<f64> {
-        let reference = self.reference(0..3);
-        own.iter().map(|own| reference / own).collect()
-    }
-
-    /// The noise of a displacement over that of a rotation (m/rad) times
-    /// `factor`.
-    pub(crate) fn weigh_rotations(&mut self, factor: f64) {
-        self.own.iter_mut().skip(3).for_each(|own| *own /= factor);
-    }
-
     /// The root mean square of the readings' sigma over some axes.
     fn reference(&self, axes: core::ops::Range<usize>) -> f64 {
         let count = axes.len() as f64;
         let mean = self.own[axes].iter().map(|own| own * own).sum::<f64>() / count;
-        mean.sqrt() * whitening::reading_of(self.shared)
+        mean.sqrt() * reading_of(self.shared)
     }
 
     /// The readings in the frame measured in, a row each.
     fn measured(&self, samples: &Samples) -> DMatrix<f64> {
-        let rows = samples.rows.len() * samples.axes;
-        let mut stacked = DMatrix::from_column_slice(rows, 1, &samples.readings().as_slice()[..rows]);
-        turn(&mut stacked, self.turns.as_deref(), self.axes());
-        DMatrix::from_row_slice(samples.rows.len(), samples.axes, stacked.as_slice())
+        let mut readings = DMatrix::zeros(samples.rows.len(), samples.axes);
+        for row in 0..samples.rows.len() {
+            let read = samples.reading(row);
+            for first in (0..samples.axes).step_by(3) {
+                let three = Vector3::from_column_slice(&read[first..first + 3]);
+                let turned = self.turns.as_ref().map_or(three, |turns| turns[row] * three);
+                (0..3).for_each(|k| readings[(row, first + k)] = turned[k]);
+            }
+        }
+        readings
     }
+}
+
+/// The noise of a reading over that which a row has to itself: the row is the difference of
+/// a loaded and an unloaded reading, of which `shared` is `lambda`.
+fn reading_of(shared: f64) -> f64 {
+    (0.5 * (1.0 + shared)).sqrt()
+}
+
+/// What whitening takes from every row of a visit of `rows` rows: this factor
+/// times the visit's mean; `shared` is `lambda`.
+pub fn mean_share(rows: usize, shared: f64) -> f64 {
+    1.0 - (1.0 / (1.0 + shared * rows as f64)).sqrt()
 }
 
 /// From the base frame to that of the tool.

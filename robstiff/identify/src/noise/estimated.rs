@@ -1,7 +1,5 @@
 //! What the contrasts of a campaign say of its noise, where so much is free at each pose.
 
-use std::vec::Vec;
-
 use super::contrasts::{Chunk, Level};
 use super::outliers::{self, Outlier};
 use super::reml::{Share, count, profile, share, sums};

@@ -2,8 +2,6 @@
 //! Biometrika 58, 1971): the likelihood of contrasts, which know nothing of the
 //! coefficients.
 
-use std::vec::Vec;
-
 use super::contrasts::Chunk;
 
 /// What contrasts say of the variance of each axis, given the share of the

@@ -15,22 +15,17 @@
 //! - the axes have one variance unless they differ (Bartlett's test,
 //!   [`EQUAL_AXES`]);
 //! - outlying readings ([`outliers`](super::outliers)), sought before anything more is freed, are
-//!   listed and set aside: they would pass for noise. Those that are so beyond doubt
-//!   ([`Covariance::beyond_doubt`]) no fit begins with.
+//!   listed and set aside: they would pass for noise.
 //!
 //! Where poses have too few rows for that (one load a pose), the axes are taken
-//! to be equal and `lambda` to be 1, and [`Covariance::refined`] weighs the axes
-//! by what the *final* model leaves; it does not touch `lambda`.
-
-use std::vec::Vec;
+//! to be equal and `lambda` to be 1.
 
 use super::contrasts::{Level, contrasts};
-use super::encoders::EncoderNoise;
 use super::estimated::{Estimated, bartlett};
 use super::reml::count;
+use super::samples::Samples;
 use super::{Basis, Covariance, EQUAL_AXES, NESTED, Tails};
 use crate::campaign::{Frame, Noise};
-use crate::identify::samples::Samples;
 
 /// Outlying readings are looked for at most so many times over.
 const PASSES: usize = 8;
@@ -38,23 +33,12 @@ const PASSES: usize = 8;
 impl Covariance {
     /// The covariance of a campaign's readings from the poses for which
     /// `of_pose` holds; the second order of large deflections is best taken from
-    /// them ([`straightened`](crate::identify::second_order::straightened)); `frame` is the
+    /// them ([`straightened`](super::straight::straightened)); `frame` is the
     /// one displacements were measured in. Of `declared` only the ratio of displacement to
     /// rotation is used, where there is no other: how noisy the readings are, they say
     /// themselves.
     pub(crate) fn estimate(samples: &Samples, frame: Frame, declared: Noise, of_pose: impl Fn(usize) -> bool) -> Self {
-        Self::estimate_without(samples, frame, declared, of_pose, &[])
-    }
-
-    /// The same without rows that are known not to belong.
-    pub(crate) fn estimate_without(
-        samples: &Samples,
-        frame: Frame,
-        declared: Noise,
-        of_pose: impl Fn(usize) -> bool,
-        without: &[usize],
-    ) -> Self {
-        Self::estimated(samples, frame, declared, of_pose, without).0
+        Self::estimated(samples, frame, declared, of_pose).0
     }
 
     /// The same with the tails of what is left, where the readings say something of them: the
@@ -65,7 +49,7 @@ impl Covariance {
         declared: Noise,
         of_pose: impl Fn(usize) -> bool,
     ) -> (Self, Option<Tails>) {
-        let (covariance, estimated) = Self::estimated(samples, frame, declared, of_pose, &[]);
+        let (covariance, estimated) = Self::estimated(samples, frame, declared, of_pose);
         (covariance, estimated.and_then(|estimated| estimated.tails()))
     }
 
@@ -74,13 +58,10 @@ impl Covariance {
         frame: Frame,
         declared: Noise,
         of_pose: impl Fn(usize) -> bool,
-        without: &[usize],
     ) -> (Self, Option<Estimated>) {
         let mut covariance = Self::assumed(samples, frame, declared);
-        covariance.asked = samples.rows.iter().filter(|row| of_pose(row.pose)).count();
         let readings = covariance.measured(samples);
         let mut left_out = std::vec![false; samples.rows.len()];
-        without.iter().for_each(|&row| left_out[row] = true);
         let at = |level, left_out: &[bool]| {
             let chunks = contrasts(samples, &readings, level, &of_pose, |row| left_out[row]);
             Estimated::at(level, chunks, samples.axes)
@@ -108,7 +89,6 @@ impl Covariance {
             }
         }
         covariance.take(&estimated);
-        covariance.encoders = EncoderNoise::estimate(samples, &of_pose);
         covariance.outliers.sort_by_key(|outlier| outlier.rows[0]);
         (covariance, Some(estimated))
     }
