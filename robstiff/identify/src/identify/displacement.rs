@@ -35,7 +35,7 @@ pub fn identify(campaign: &Campaign, data: &Displacements) -> Result<Identificat
         return Err(less_than_rigid());
     }
     if alone.seen().is_empty() {
-        return Err(Error::NotShown(match case.noise {
+        return Err(Error::NotShown(match case.noise.and(campaign.noise_of_reading()) {
             _ if !alone.moves_any() => String::from("these poses and loads show none of the robot's compliances"),
             Some(noise) => {
                 format!("the noise of {} that the campaign declares hides all that the loads do", told_length(noise))

@@ -107,11 +107,11 @@ fn declared_laws_of_joints_are_fitted_again() {
         assert!(off < 1e-2 * joint.compliance() || off < 1.96 * std, "{} off by {off}, {std}", estimate.name);
         assert!(std < 5e-2 * joint.compliance(), "{} {std}", estimate.name);
     }
-    for (found, truth) in found.description.effects.iter().zip(&truth.effects) {
-        for (found, truth) in found.numbers().iter().zip(truth.numbers().iter()) {
-            // Thirty loads, each on a robot at rest, do not tell weights well from a compliance.
-            assert!((found - truth).abs() <= 0.1 * truth.abs(), "{found} {truth}");
-        }
+    // Thirty loads, each on a robot at rest, do not tell weights well from a compliance.
+    for (estimate, truth) in found.estimates[5..].iter().zip([2e-4, 8e-8, 5e-8]) {
+        let (off, std) = ((estimate.value - truth).abs(), estimate.std.expect("it is seen"));
+        assert!(off <= 0.1 * truth || off < 1.96 * std, "{} off by {off}, {std}", estimate.name);
+        assert!(std < 0.3 * truth, "{} {std}", estimate.name);
     }
     // A compliance that varies is a share of the joint's own, and grows with it.
     truth.effects.push(Effect::PoseDependentCompliance { joint: 2, cos1: 0.5, sin1: 0.3, cos2: 0.0, sin2: 0.1 });
