@@ -4,10 +4,10 @@ use core::f64::consts::TAU;
 
 use nalgebra::Complex;
 
-use super::model::{Model, NO_DIRECTIONS};
-use super::rest;
-use super::{Fit, FittedModes, Responses};
-use crate::stability::{MeasuredMode, Spring};
+use super::Responses;
+
+/// A place among pairs of directions at which there is none.
+pub const NO_DIRECTIONS: usize = usize::MAX;
 
 /// The lines of the responses that are fitted.
 pub struct Lines {
@@ -20,13 +20,13 @@ pub struct Lines {
     /// The pairs of directions that were measured, those of force and response exchanged being one.
     pub pairs: Vec<[usize; 2]>,
     /// The highest frequency (rad/s).
-    highest: f64,
+    pub highest: f64,
     /// The first and the last frequency (Hz).
-    band: [f64; 2],
+    pub band: [f64; 2],
     /// The root mean square of the values.
-    size: f64,
+    pub size: f64,
     /// How often the displacement is differentiated.
-    order: i32,
+    pub order: i32,
 }
 
 impl Lines {
@@ -63,35 +63,6 @@ impl Lines {
     /// The sum of the squares of all values.
     pub fn power(&self) -> f64 {
         self.responses.iter().flat_map(|(_, values)| values).map(|value| value.norm_sqr()).sum()
-    }
-
-    /// A model in SI units, with what it leaves.
-    pub fn unscaled(&self, model: &Model) -> FittedModes {
-        // The values are those of `(i w)^order G`.
-        let flexibility = self.size / self.highest.powi(self.order);
-        let mut modes: Vec<MeasuredMode> = model
-            .modes
-            .iter()
-            .map(|mode| MeasuredMode {
-                frequency: self.highest * mode.frequency,
-                damping: mode.damping,
-                stiffness: mode.frequency.powi(2) / (mode.shape.norm_squared() * flexibility),
-                direction: mode.shape.normalize(),
-            })
-            .collect();
-        modes.sort_by(|one, other| one.frequency.total_cmp(&other.frequency));
-        let (kept, massless) = rest::massless(self, model);
-        let stiffer = |spring: Spring| Spring { stiffness: spring.stiffness / flexibility, ..spring };
-        let massless = massless.into_iter().map(stiffer).collect();
-        let share = |sum: f64| (sum / self.power()).sqrt();
-        let fit = Fit {
-            band: self.band,
-            lines: self.frequencies.len(),
-            responses: self.responses.len(),
-            left: share(kept.left(self)),
-            below: share(model.below_alone(self)),
-        };
-        FittedModes { modes, massless, fit }
     }
 }
 

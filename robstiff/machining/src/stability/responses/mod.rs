@@ -29,6 +29,7 @@ mod poles;
 mod refine;
 mod rest;
 mod table;
+mod units;
 
 use core::fmt;
 
@@ -183,7 +184,7 @@ impl Responses {
             return Err(FitError::TooFewLines { lines, needed, modes });
         }
         let lines = Lines::new(self);
-        let fitted = lines.unscaled(&choose::model(&lines, asked)?);
+        let fitted = units::unscaled(&lines, &choose::model(&lines, asked)?);
         if fitted.fit.left > MOST_LEFT { Err(FitError::Unexplained(fitted.fit.left)) } else { Ok(fitted) }
     }
 

@@ -4,9 +4,6 @@ use nalgebra::{Complex, Vector3};
 
 use super::lines::Lines;
 
-/// A place among pairs of directions at which there is none.
-pub const NO_DIRECTIONS: usize = usize::MAX;
-
 /// A mode, in the units of the [lines](Lines).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mode {
