@@ -1,6 +1,29 @@
 //! The order in which the statements of routines run.
 
 use std::collections::{HashMap, HashSet};
+use std::ops::Range;
+
+use super::source::{Sources, code};
+
+/// A statement, which is a line: the file and the bytes, without the line end.
+pub(super) type Statement = (usize, Range<usize>);
+
+/// A routine: its name and its lines.
+pub(super) struct Routine {
+    pub(super) name: String,
+    pub(super) lines: Vec<Statement>,
+}
+
+/// The lines of routines in the order in which they run, where a line that calls one has its name and `()` alone;
+/// `comment` begins a comment.
+pub(super) fn lines_in_order(sources: &Sources, routines: &[Routine], comment: char) -> Vec<Statement> {
+    let all: Vec<(&str, &[Statement])> = routines.iter().map(|routine| (&*routine.name, &*routine.lines)).collect();
+    in_order(&all, |(file, bytes)| {
+        let mut cursor = sources.cursor(*file, code(sources.text(*file), bytes.clone(), comment));
+        let name = cursor.word()?;
+        (cursor.eat("(") && cursor.eat(")") && cursor.is_done()).then_some(name)
+    })
+}
 
 /// The statements of routines (name, statements) in the order in which they run: a
 /// routine that is called stands in place of its first call, and those that none

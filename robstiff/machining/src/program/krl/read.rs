@@ -8,9 +8,10 @@ use robstiff_robots::Diagnostics;
 
 use super::POSITIONS;
 use super::aggregate::Aggregate;
-use super::routines::{code, lines, lines_in_order, routines};
+use super::routines::{COMMENT, code, lines, routines};
 use super::state::{State, Which};
 use crate::program::document::Place;
+use crate::program::order::lines_in_order;
 use crate::program::source::{Cursor, Sources};
 use crate::program::{Document, Frame, Instruction, Language, Motion, Move, Program, Speed, TextFile};
 
@@ -37,7 +38,7 @@ const KEPT: [(&str, &str); 11] = [
 pub fn read(files: Vec<TextFile>) -> Result<Document, Diagnostics> {
     let mut sources = Sources::new(files);
     let routines = routines(&mut sources);
-    let order = lines_in_order(&sources, &routines);
+    let order = lines_in_order(&sources, &routines, COMMENT);
     let mut reader = Reader::new(&sources);
     for file in 0..sources.count() {
         if sources.name(file).to_ascii_lowercase().ends_with(".dat") {

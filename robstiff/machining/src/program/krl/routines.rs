@@ -1,28 +1,22 @@
-//! The routines of the files, and the order in which their lines run.
+//! The routines of the files.
 
 use std::ops::Range;
 
-use crate::program::order::in_order;
+use crate::program::order::{Routine, Statement};
 use crate::program::source::{self, Sources};
 
-/// A line of a file: the file and the bytes, without comment and line end.
-pub(super) type Place = (usize, Range<usize>);
-
-/// A routine: its name and its lines.
-pub(super) struct Routine {
-    pub(super) name: String,
-    pub(super) lines: Vec<Place>,
-}
+/// What begins a comment.
+pub(super) const COMMENT: char = ';';
 
 /// The lines of a file.
-pub(super) fn lines(sources: &Sources, file: usize) -> impl Iterator<Item = Place> {
+pub(super) fn lines(sources: &Sources, file: usize) -> impl Iterator<Item = Statement> {
     let lines = sources.lines(file);
     (1..=lines.count()).map(move |number| (file, lines.range(number)))
 }
 
 /// The bytes of a line before its comment.
 pub(super) fn code(text: &str, bytes: Range<usize>) -> Range<usize> {
-    source::code(text, bytes, ';')
+    source::code(text, bytes, COMMENT)
 }
 
 /// The routines of all files, in order; a `.dat` has none.
@@ -65,14 +59,4 @@ pub(super) fn routines(sources: &mut Sources) -> Vec<Routine> {
         }
     }
     routines
-}
-
-/// The lines in the order in which they run.
-pub(super) fn lines_in_order(sources: &Sources, routines: &[Routine]) -> Vec<Place> {
-    let all: Vec<(&str, &[Place])> = routines.iter().map(|routine| (&*routine.name, &*routine.lines)).collect();
-    in_order(&all, |(file, bytes)| {
-        let mut cursor = sources.cursor(*file, code(sources.text(*file), bytes.clone()));
-        let name = cursor.word()?;
-        (cursor.eat("(") && cursor.eat(")") && cursor.is_done()).then_some(name)
-    })
 }

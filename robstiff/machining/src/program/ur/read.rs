@@ -8,8 +8,9 @@ use robstiff_robots::Diagnostics;
 
 use super::arguments::{Argument, arguments};
 use super::literal::Literal;
-use super::routines::{COMMENT, lines_in_order, routines};
+use super::routines::{COMMENT, routines};
 use crate::program::document::Place;
+use crate::program::order::lines_in_order;
 use crate::program::source::{Cursor, Sources, code};
 use crate::program::{Document, Frame, Instruction, Language, Motion, Move, Program, Speed, TextFile, Zone};
 
@@ -38,7 +39,7 @@ const COMPUTED: &str = "its position is computed at run time";
 pub fn read(files: Vec<TextFile>) -> Result<Document, Diagnostics> {
     let mut sources = Sources::new(files);
     let routines = routines(&mut sources);
-    let order = lines_in_order(&sources, &routines);
+    let order = lines_in_order(&sources, &routines, COMMENT);
     let (values, instructions, places, problems) = Default::default();
     let mut reader = Reader { sources: &sources, values, tool: None, work: None, instructions, places, problems };
     order.into_iter().for_each(|(file, bytes)| reader.line(file, bytes));

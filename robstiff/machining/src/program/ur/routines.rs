@@ -1,21 +1,12 @@
-//! The functions of the files, and the order in which their lines run.
+//! The functions of the files.
 
 use std::ops::Range;
 
-use crate::program::order::in_order;
+use crate::program::order::Routine;
 use crate::program::source::{Sources, code};
 
 /// What begins a comment.
 pub(super) const COMMENT: char = '#';
-
-/// A line of a file: the file and the bytes, without the line end.
-pub(super) type Place = (usize, Range<usize>);
-
-/// A function: its name and its lines.
-pub(super) struct Routine {
-    pub(super) name: String,
-    pub(super) lines: Vec<Place>,
-}
 
 /// A function that is not closed yet.
 struct Open {
@@ -75,14 +66,4 @@ pub(super) fn routines(sources: &mut Sources) -> Vec<Routine> {
         }
     }
     routines
-}
-
-/// The lines in the order in which they run.
-pub(super) fn lines_in_order(sources: &Sources, routines: &[Routine]) -> Vec<Place> {
-    let all: Vec<(&str, &[Place])> = routines.iter().map(|routine| (&*routine.name, &*routine.lines)).collect();
-    in_order(&all, |(file, bytes)| {
-        let mut cursor = sources.cursor(*file, code(sources.text(*file), bytes.clone(), COMMENT));
-        let name = cursor.word()?;
-        (cursor.eat("(") && cursor.eat(")") && cursor.is_done()).then_some(name)
-    })
 }
