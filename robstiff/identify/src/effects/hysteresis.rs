@@ -3,8 +3,8 @@
 use robstiff::Effect;
 use robstiff_robots::Place as Part;
 
-use super::{Form, Kind, Offers, Scene, Side};
-use crate::model::law::{play, under_weight};
+use super::{Form, Kind, Offers, Scene, Side, about_weight};
+use crate::model::law::play;
 use crate::model::{Parameter, Size, Term};
 
 /// The kind.
@@ -32,28 +32,21 @@ fn offer(scene: &Scene<'_>, offers: &mut Offers) {
     for joint in scene.turning().into_iter().filter(|&joint| scene.is_driven(joint)) {
         let largest = scene.torque[joint - 1];
         let size = 0.5 * scene.compliance[joint - 1];
-        let form = |radii: &[f64], preloaded: bool| {
+        let form = |radii: &[f64]| {
             let weight = |(k, radius): (usize, &f64)| {
-                let law = play(radius * largest);
-                let term = Term::Law(joint, if preloaded { under_weight(law) } else { law });
+                let term = Term::Law(joint, play(radius * largest));
                 Parameter::new(WEIGHTS[k], "rad/Nm", Size::Of(size), term).nonnegative()
             };
             let label: Vec<String> = radii.iter().map(|radius| format!("radius {radius}")).collect();
-            let label = label.join(", ") + if preloaded { ", under weight" } else { "" };
-            let form = Form::new(label, radii.iter().enumerate().map(weight).collect());
+            let form = Form::new(label.join(", "), radii.iter().enumerate().map(weight).collect());
             let radii: Vec<f64> = radii.iter().map(|radius| radius * largest).collect();
             let form = radii.iter().enumerate().fold(form, |form, (k, radius)| form.with(NAMES[k], *radius, "Nm"));
-            let form = form.written(move |weights| written(joint, &radii, weights));
-            if preloaded { form.preloaded() } else { form }
+            form.written(move |weights| written(joint, &radii, weights))
         };
+        let grid = RADII.iter().map(|radius| form(&[*radius])).chain([form(&THREE)]);
         let found: Vec<f64> = scene.found(KIND.name, joint).collect();
-        let mut forms = Vec::new();
-        for &preloaded in scene.preloads() {
-            forms.extend(RADII.iter().map(|radius| form(&[*radius], preloaded)));
-            forms.push(form(&THREE, preloaded));
-            forms.extend(found.iter().map(|radius| Form { between: true, ..form(&[*radius], preloaded) }));
-        }
-        offers.add(Part::Joint(joint), forms);
+        let between = found.into_iter().map(|radius| Form { between: true, ..form(&[radius]) });
+        offers.add(Part::Joint(joint), about_weight(scene, grid.chain(between).collect()));
     }
 }
 

@@ -52,7 +52,8 @@ use robstiff_robots::Place as Part;
 pub use outliers::KIND as OUTLIERS;
 pub use scene::{Scene, Shapes, What};
 
-use crate::model::{Parameter, Size};
+use crate::model::law::under_weight;
+use crate::model::{Parameter, Size, Term};
 
 /// Every kind there is.
 pub static REGISTRY: [&Kind; 36] = [
@@ -197,6 +198,15 @@ pub struct Form {
     pub same: Vec<&'static str>,
 }
 
+/// Forms of laws of a gear, each about the load alone and, where gears may carry a weight, about all of that.
+fn about_weight(scene: &Scene<'_>, mut forms: Vec<Form>) -> Vec<Form> {
+    if scene.may_preload() {
+        let preloaded: Vec<Form> = forms.iter().map(Form::preloaded).collect();
+        forms.extend(preloaded);
+    }
+    forms
+}
+
 /// What values make of a description: the effects that go into it.
 pub type Written = Rc<dyn Fn(&[f64]) -> Vec<Effect>>;
 
@@ -226,18 +236,28 @@ impl Form {
         self
     }
 
-    /// The same of a law about all that gears carry: a description declares their preload beside it.
-    #[must_use]
-    pub fn preloaded(self) -> Self {
-        let Some(law) = self.written.clone() else { return self };
+    /// The same with laws about all that a gear carries: a description declares the preload beside them.
+    fn preloaded(&self) -> Self {
+        let carried = |parameter: &Parameter| match &parameter.term {
+            Term::Law(joint, law) => {
+                Parameter { term: Term::Law(*joint, under_weight(law.clone())), ..parameter.clone() }
+            }
+            _ => parameter.clone(),
+        };
+        let of_law = self.written.clone();
         let written = move |values: &[f64]| {
-            let mut effects = law(values);
+            let mut effects = of_law.as_ref().map_or_else(Vec::new, |written| written(values));
             if !effects.is_empty() {
                 effects.push(Effect::GravityPreload { share: 1.0 });
             }
             effects
         };
-        self.with("preload", 1.0, "1").written(written)
+        let form = Self {
+            label: format!("{}, under weight", self.label),
+            parameters: self.parameters.iter().map(carried).collect(),
+            ..self.clone()
+        };
+        form.with("preload", 1.0, "1").written(written)
     }
 
     /// The same with a number that is chosen.
@@ -328,7 +348,7 @@ fn three_readings(
     let one = |k: usize| {
         let share = share.clone();
         let of = move |at: &crate::model::At<'_>| nalgebra::Vector3::ith(k, share(at));
-        Parameter::new(names[k], unit, Size::Of(size), crate::model::Term::Reading(Rc::new(of)))
+        Parameter::new(names[k], unit, Size::Of(size), Term::Reading(Rc::new(of)))
     };
     (0..3).map(one).collect()
 }

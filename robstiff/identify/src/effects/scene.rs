@@ -110,11 +110,9 @@ impl Scene<'_> {
         self.torque[joint - 1] > 0.0
     }
 
-    /// Whether the law of a gear acts on the load alone, or on all that the gear carries: both are possible where the
-    /// description knows masses and declares no preload by them.
-    pub fn preloads(&self) -> &'static [bool] {
-        let may = self.what != What::Clamped && self.weight.is_known() && self.weight.preload == 0.0;
-        if may { &[false, true] } else { &[false] }
+    /// Whether gears may carry a weight: the description knows masses and declares no preload by them.
+    pub fn may_preload(&self) -> bool {
+        self.what != What::Clamped && self.weight.is_known() && self.weight.preload == 0.0
     }
 
     /// The unit of the compliance of a joint (from 1).

@@ -3,8 +3,8 @@
 use robstiff::Effect;
 use robstiff_robots::Place as Part;
 
-use super::{Form, Kind, Offers, Scene, Side};
-use crate::model::law::{under_weight, unit_law};
+use super::{Form, Kind, Offers, Scene, Side, about_weight};
+use crate::model::law::unit_law;
 use crate::model::term::Law;
 use crate::model::{Parameter, Size, Term};
 
@@ -43,20 +43,11 @@ pub(super) fn curves(
 ) -> Vec<Form> {
     let largest = scene.torque[joint - 1];
     let own: Vec<f64> = scene.found(kind.name, joint).collect();
-    let form = |share: f64, preloaded: bool| {
+    let form = |share: &f64| {
         let knee = share * largest;
-        let law = unit_law(of(1.0, knee));
-        let (law, label) = match preloaded {
-            true => (under_weight(law), format!("knee {share}, under weight")),
-            false => (law, format!("knee {share}")),
-        };
-        let form = Form::new(label, vec![number(law)]).with("knee", knee, "Nm").written(move |v| vec![of(v[0], knee)]);
-        if preloaded { form.preloaded() } else { form }
+        let form = Form::new(format!("knee {share}"), vec![number(unit_law(of(1.0, knee)))]).with("knee", knee, "Nm");
+        form.written(move |v| vec![of(v[0], knee)])
     };
-    let mut forms = Vec::new();
-    for &preloaded in scene.preloads() {
-        forms.extend(grid.iter().map(|share| form(*share, preloaded)));
-        forms.extend(own.iter().map(|share| Form { between: true, ..form(*share, preloaded) }));
-    }
-    forms
+    let between = own.iter().map(|share| Form { between: true, ..form(share) });
+    about_weight(scene, grid.iter().map(form).chain(between).collect())
 }
