@@ -61,6 +61,15 @@ pub fn normal(random: &mut ChaCha8Rng) -> f64 {
     radius * (core::f64::consts::TAU * random.random::<f64>()).cos()
 }
 
+/// The middle one of some numbers; zero of none.
+pub fn median(mut numbers: Vec<f64>) -> f64 {
+    if numbers.is_empty() {
+        return 0.0;
+    }
+    let middle = numbers.len() / 2;
+    *numbers.select_nth_unstable_by(middle, f64::total_cmp).1
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

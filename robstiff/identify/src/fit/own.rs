@@ -15,7 +15,7 @@ use super::readable::{is_readable, shares};
 use crate::effects::What;
 use crate::model::described::fixed;
 use crate::model::{Sign, Size};
-use crate::probability::{WITHIN, student};
+use crate::probability::{WITHIN, median, student};
 use crate::regression::Fit;
 use crate::regression::tails::most_apart;
 use crate::select::Layout;
@@ -75,7 +75,7 @@ impl<'e> Alone<'e> {
         engine.noise.spares_others = true;
         engine.noise.weights = evened(&engine);
         engine.fit_alone()?;
-        let layout = Layout { candidates: Vec::new(), forms: Vec::new(), ..engine.layout() };
+        let layout = engine.layout_alone();
         let likely = likely(&engine, &layout, own.len());
         let shown = vec![Visibility::Seen; own.len()];
         let solved = engine.settle(&layout)?;
@@ -114,8 +114,7 @@ impl<'e> Alone<'e> {
             let parameter = &mut parameters[column];
             (parameter.size, parameter.mean) = (Size::Of(self.own[column - self.layout.fixed].parameter.mean), 0.0);
         }
-        let (keys, fixed, always) = (self.layout.keys.clone(), self.layout.fixed, self.layout.always);
-        let layout = Layout { parameters, keys, fixed, always, candidates: Vec::new(), forms: Vec::new() };
+        let layout = Layout { parameters, ..self.engine.layout_alone() };
         if held.is_empty() { None } else { Some(self.engine.free(&layout)?.fit) }
     }
 
@@ -306,7 +305,7 @@ impl<'e> Alone<'e> {
     /// What the numbers leave of every row with some values, wherever the robot stands; the table and the reflector
     /// are as declared.
     pub fn left(&self, values: impl Fn(usize) -> f64) -> Option<DVector<f64>> {
-        let mut layout = Layout { candidates: Vec::new(), forms: Vec::new(), ..self.engine.layout() };
+        let mut layout = self.engine.layout_alone();
         let value = |changed, k: usize| with_value(changed, &self.own[k], values(k));
         let fixed = fixed(&(0..self.own.len()).fold(self.engine.robot.clone(), value));
         layout.parameters.splice(..fixed.len(), fixed);
@@ -352,7 +351,7 @@ fn evened(engine: &Engine<'_>) -> Vec<f64> {
     if engine.scene.what != What::Displacements {
         return engine.noise.weights.clone();
     }
-    let layout = Layout { candidates: Vec::new(), forms: Vec::new(), ..engine.layout() };
+    let layout = engine.layout_alone();
     let columns = engine.linearise(&layout, &engine.point);
     let of_row = |row: usize| -> f64 {
         let of = |k: usize| match layout.parameters[k].size {
@@ -362,9 +361,7 @@ fn evened(engine: &Engine<'_>) -> Vec<f64> {
         layout.always().map(of).sum()
     };
     let says: Vec<f64> = (0..readings.rows()).map(of_row).collect();
-    let mut loaded: Vec<f64> = says.iter().copied().filter(|says| *says > 0.0).collect();
-    loaded.sort_by(f64::total_cmp);
-    let Some(&middle) = loaded.get(loaded.len() / 2) else { return engine.noise.weights.clone() };
+    let middle = median(says.iter().copied().filter(|says| *says > 0.0).collect());
     says.into_iter().map(|says| if says > middle { middle / says } else { 1.0 }).collect()
 }
 

@@ -55,7 +55,7 @@ pub const ABOVE_NOISE: f64 = 1.25;
 
 /// Where the error of all rows is above the noise of most by more than this factor, some rows are far off. Student's
 /// distribution with three degrees of freedom, which has heavier tails than readings have, comes to 1.7.
-pub const FAR_ABOVE: f64 = 3.0;
+pub const FAR_OFF: f64 = 3.0;
 
 /// An effect that is less likely than this is not even suspected: odds of nineteen to one against it.
 pub const SUSPECTED: f64 = 0.05;

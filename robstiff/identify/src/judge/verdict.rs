@@ -2,6 +2,9 @@
 
 use core::fmt;
 
+use super::thresholds::{ABOVE_NOISE, MOST_NAMES, MOST_OUTLYING};
+use crate::words::and;
+
 /// What a tracing came to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Verdict {
@@ -56,10 +59,6 @@ pub struct OverNoise {
     /// What this may well be by chance.
     pub by_chance: f64,
 }
-
-use crate::words::and;
-
-use super::thresholds::{ABOVE_NOISE, MOST_NAMES, MOST_OUTLYING};
 
 /// The verdict, and why in a sentence without its full stop.
 pub fn verdict(of: &Evidence<'_>) -> (Verdict, String) {

@@ -44,16 +44,15 @@ pub struct Sample {
 }
 
 impl Samples {
-    /// The rows of a campaign on the robot of a description.
-    pub fn of_description(description: &Description, data: &Displacements) -> Self {
-        let observation = Displacement::new(description, data);
+    /// The rows of a campaign on the robot of a description, which an observation is of.
+    pub fn of(observation: &Displacement<'_>, description: &Description, data: &Displacements) -> Self {
         let (parameters, values) = described::as_declared(description);
         let (world, readings) = (observation.world().clone(), observation.readings());
         let loaded = observation.loaded(&world, &parameters, &values);
         let axes = readings.width - observation.encoders.len();
         let row = |(i, row): (usize, &crate::campaign::Observation)| {
             let tcp = loaded.stands[loaded.station[i]].tcp;
-            let [displacement, rotation] = in_base(&observation, &readings.values, i);
+            let [displacement, rotation] = in_base(observation, &readings.values, i);
             Sample {
                 pose: row.pose,
                 visit: row.visit,

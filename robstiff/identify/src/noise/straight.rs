@@ -15,6 +15,7 @@ use crate::model::described::declared;
 use crate::model::{Parameter, Term};
 use crate::observe::Observation;
 use crate::observe::displacement::Displacement;
+use crate::probability::median;
 
 /// Compliances that make displacements so many times as large as they are, or more, are not
 /// of the right size: forces in kilograms, or stiffness per arcmin, make them so.
@@ -25,8 +26,8 @@ const TOO_LARGE: f64 = 2.0;
 /// description accounts for them. Where its compliances are [too large](TOO_LARGE), the second order is that
 /// of such as are not.
 pub fn straightened(description: &Description, data: &Displacements) -> Samples {
-    let samples = Samples::of_description(description, data);
     let observation = Displacement::new(description, data);
+    let samples = Samples::of(&observation, description, data);
     let compliance: Vec<f64> = description.joints.iter().map(Joint::compliance).collect();
     let size = size(&samples, &compliance);
     let share = if size * TOO_LARGE < 1.0 { size } else { 1.0 };
@@ -57,7 +58,6 @@ fn size(samples: &Samples, compliance: &[f64]) -> f64 {
         let length = moved.norm();
         (length > 0.0).then(|| samples.rows[row].displacement.dot(&(moved / length)) / length)
     };
-    let mut sizes: Vec<f64> = (0..samples.rows.len()).filter_map(of_row).collect();
-    let middle = sizes.len() / 2;
-    if sizes.is_empty() { 1.0 } else { sizes.select_nth_unstable_by(middle, f64::total_cmp).1.max(0.0) }
+    let sizes: Vec<f64> = (0..samples.rows.len()).filter_map(of_row).collect();
+    if sizes.is_empty() { 1.0 } else { median(sizes).max(0.0) }
 }

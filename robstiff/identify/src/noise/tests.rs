@@ -8,9 +8,11 @@ use super::estimated::beyond_noise;
 use super::straight::straightened;
 use super::*;
 use crate::campaign::made::{Plan, displacements};
-use crate::campaign::{Campaign, Data};
+use crate::campaign::{Campaign, Data, Displacements};
+use crate::observe::displacement::Displacement;
 use crate::probability::normal;
 use robstiff::Effect;
+use robstiff_robots::Description;
 use robstiff_robots::samples::five_axis;
 
 fn estimate(plan: &Plan) -> Covariance {
@@ -25,6 +27,10 @@ fn of(campaign: &Campaign) -> Covariance {
 fn straight(campaign: &Campaign) -> (Samples, Frame) {
     let data = displacements(campaign);
     (straightened(&campaign.robot, data), data.measured_frame)
+}
+
+fn samples_of(robot: &Description, data: &Displacements) -> Samples {
+    Samples::of(&Displacement::new(robot, data), robot, data)
 }
 
 fn mean(values: impl Iterator<Item = f64> + Clone) -> f64 {
@@ -194,7 +200,7 @@ fn repetitions_give_the_noise() {
         data.rows.push(twin);
     }
     data.visits = (0..60).map(|i| format!("{i}")).collect();
-    let samples = Samples::of_description(&five_axis(), data);
+    let samples = samples_of(&five_axis(), data);
     let covariance = Covariance::estimate(&samples, Frame::Base, Noise::default(), |_| true);
     let without = |left_out: &[usize]| {
         let left_out = left_out.to_vec();
@@ -211,7 +217,7 @@ fn repetitions_give_the_noise() {
 fn contrasts_are_free_of_loads() {
     let ramp = std::vec![0.35, 0.7, 1.0, 0.7, 0.35, 0.0];
     let campaign = Plan { poses: 300, visits: 4, ramp, there_and_back: true, ..Plan::new(6) }.run();
-    let samples = Samples::of_description(&campaign.robot, displacements(&campaign));
+    let samples = samples_of(&campaign.robot, displacements(&campaign));
     let readings = DMatrix::from_fn(samples.rows.len(), 3, |i, k| samples.rows[i].displacement[k]);
     for (level, count) in [(Level::Linear, 22), (Level::Curved, 20), (Level::Repeated, 11)] {
         for chunk in contrasts(&samples, &readings, level, |_| true, |_| false) {

@@ -17,8 +17,9 @@
 
 use nalgebra::{DMatrix, DVector, Vector3};
 
-use super::tails::{Apart, median, most_apart, weigh};
+use super::tails::{Apart, most_apart, weigh};
 use crate::observe::Readings;
+use crate::probability::median;
 
 /// The discrepancies `kappa` that are weighed against each other; none has half the prior.
 pub const DISCREPANCIES: [f64; 5] = [0.0, 0.03, 0.3, 3.0, 30.0];

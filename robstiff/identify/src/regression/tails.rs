@@ -5,6 +5,8 @@
 
 use statrs::function::gamma::ln_gamma;
 
+use crate::probability::median;
+
 /// By which factors the wider distributions are wider than the bulk. [`MORE`] times the last follows, up to the farthest
 /// row.
 const WIDER: [f64; 3] = [12.0, 60.0, 300.0];
@@ -145,15 +147,6 @@ fn widths(squares: &[f64]) -> Vec<f64> {
 fn log_sum(logs: impl Iterator<Item = f64> + Clone) -> f64 {
     let most = logs.clone().fold(f64::NEG_INFINITY, f64::max);
     most + logs.map(|one| (one - most).exp()).sum::<f64>().ln()
-}
-
-/// The middle one of some numbers; zero of none.
-pub fn median(mut numbers: Vec<f64>) -> f64 {
-    if numbers.is_empty() {
-        return 0.0;
-    }
-    let middle = numbers.len() / 2;
-    *numbers.select_nth_unstable_by(middle, f64::total_cmp).1
 }
 
 #[cfg(test)]

@@ -9,7 +9,7 @@ use super::always::{BLOCK, Declared, LIKELY_SCALES, REFLECTOR, always};
 use super::layout::Layout;
 use super::problem::{Problem, moves};
 use super::search::Width;
-use crate::effects::{Offers, Scene, Shapes, What};
+use crate::effects::{Candidate, Offers, Scene, Shapes, What};
 use crate::model::arm::BETA;
 use crate::model::described::fixed;
 use crate::model::{Size, Term, World};
@@ -156,8 +156,17 @@ impl<'c> Engine<'c> {
 
     /// All parameters and the forms of all candidates.
     pub fn layout(&self) -> Layout {
+        self.layout_with(Offers::of(&self.scene))
+    }
+
+    /// The parameters that are there without any candidate.
+    pub fn layout_alone(&self) -> Layout {
+        self.layout_with(Vec::new())
+    }
+
+    fn layout_with(&self, candidates: Vec<Candidate>) -> Layout {
         let (_, own) = always(self.robot, &self.scene, self.blocks());
-        Layout::new(fixed(self.robot), own, Offers::of(&self.scene))
+        Layout::new(fixed(self.robot), own, candidates)
     }
 
     /// The widths of searches: the last, those before, and those of folds.

@@ -93,7 +93,7 @@ impl Engine<'_> {
     /// row, none of the compliances negative.
     pub fn fit_alone(&mut self) -> Option<DVector<f64>> {
         let kappa = self.first_kappa();
-        let layout = Layout { candidates: Vec::new(), ..self.layout() };
+        let layout = self.layout_alone();
         self.fitted = Fitted::Written;
         let mut left = None;
         for steps in [1, 1, 2 * STEPS] {
@@ -144,9 +144,12 @@ impl Engine<'_> {
     /// What is always in by itself at its optimum under the noise that it leaves; none of the compliances negative.
     /// A row that is far off its pose may be its own matter, or what is missing at the pose: the likelier of both.
     pub fn settle(&mut self, layout: &Layout) -> Option<Solved> {
+        if !self.noise.spares_others {
+            return self.settled(layout, false);
+        }
         let mut apart = self.clone();
         let solved = self.settled(layout, false)?;
-        if !self.noise.spares_others || solved.kappa == 0 {
+        if solved.kappa == 0 {
             return Some(solved);
         }
         let rows = self.observation.readings().rows() as f64;

@@ -18,7 +18,7 @@ use crate::fit::estimate::estimates;
 use crate::fit::noise::{self, NoiseSource};
 use crate::identify::Error;
 use crate::judge::gates::{Judgement, Weighed};
-use crate::judge::thresholds::{FAR_ABOVE, MATTERS, SUSPECTED};
+use crate::judge::thresholds::{FAR_OFF, MATTERS, SUSPECTED};
 use crate::judge::verdict::{Evidence, OverNoise, verdict};
 use crate::model::Term;
 use crate::regression::Fit;
@@ -217,7 +217,7 @@ pub fn insufficient(campaign: &Campaign, case: &Case<'_>, engine: &Engine<'_>, w
 /// What the description as declared leaves of each row.
 fn declared(campaign: &Campaign, case: &Case<'_>) -> DVector<f64> {
     let engine = case.engine(&campaign.robot);
-    let layout = Layout { candidates: Vec::new(), ..engine.layout() };
+    let layout = engine.layout_alone();
     let own = engine.declared();
     let values = own.iter().enumerate().map(|(k, own)| (layout.keys[layout.fixed + k].clone(), own.parameter.mean));
     let values = layout.values(&values.collect());
@@ -231,7 +231,7 @@ fn far_off(engine: &Engine<'_>, case: &Case<'_>, (left, noise): (&DVector<f64>, 
     let readings = case.observation.readings();
     let apart = engine.noise.apart.rows();
     let rows: Vec<usize> = case.rows(true).into_iter().filter(|row| !apart.contains(row)).collect();
-    if readings.rms(left, rows.iter().copied()) <= FAR_ABOVE * noise {
+    if readings.rms(left, rows.iter().copied()) <= FAR_OFF * noise {
         return Vec::new();
     }
     rows.into_iter().filter(|&row| engine.noise.weights[row] < OUTLYING).map(|row| readings.lines[row]).collect()
