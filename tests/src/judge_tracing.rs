@@ -112,7 +112,7 @@ pub fn judge(told: &Told, hidden: &[String], would_do: impl Fn(&str, usize) -> b
     }
 }
 
-/// Every class that a trace tells a probability of, named or suspected: it is right where one of its
+/// Every class that a trace reports a probability of, named or suspected: it is right where one of its
 /// members is something hidden, or would do as well.
 pub fn claims(trace: &Trace, hidden: &[String], would_do: impl Fn(&str, usize) -> bool) -> Vec<Claim> {
     let is_there = |class: &[(String, f64)]| {

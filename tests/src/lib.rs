@@ -10,6 +10,7 @@ pub mod interpreter;
 pub mod judge;
 pub mod judge_tracing;
 pub mod matrix;
+pub mod parallel;
 pub mod positions;
 pub mod reach;
 pub mod reliability;

@@ -47,7 +47,7 @@ pub struct Came {
     /// Numbers of effects that were named as hidden, and those of them whose 95 %
     /// interval holds the truth.
     pub numbers: [usize; 2],
-    /// The classes that a probability is told of.
+    /// The classes that a probability is reported of.
     pub claims: Vec<Claim>,
 }
 

@@ -1,4 +1,4 @@
-//! Whether what is told with a probability is true that often: a reliability diagram.
+//! Whether what is reported with a probability is true that often: a reliability diagram.
 //!
 //! Source: DeGroot and Fienberg, *The comparison and evaluation of forecasters*, The Statistician 32, 1983.
 
@@ -6,10 +6,10 @@ use std::fmt::Write as _;
 
 use crate::matrix::interval::interval;
 
-/// Something that is told with a probability, and whether it is so.
+/// Something that is reported with a probability, and whether it is so.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Claim {
-    /// What is told.
+    /// What is reported.
     pub probability: f64,
     /// Whether it is so.
     pub is_right: bool,
@@ -25,8 +25,8 @@ struct Bin {
     to: f64,
     count: usize,
     right: usize,
-    /// The mean of what is told.
-    told: f64,
+    /// The mean of what is reported.
+    reported: f64,
 }
 
 fn bins(claims: &[Claim]) -> Vec<Bin> {
@@ -39,22 +39,22 @@ fn bins(claims: &[Claim]) -> Vec<Bin> {
             to: to.min(1.0),
             count: inside.len(),
             right: inside.iter().filter(|claim| claim.is_right).count(),
-            told: sum / inside.len().max(1) as f64,
+            reported: sum / inside.len().max(1) as f64,
         }
     };
     BINS.iter().zip(ends).map(of).filter(|bin| bin.count > 0).collect()
 }
 
-/// What was told in each bin, and how often it was so.
+/// What was reported in each bin, and how often it was so.
 pub fn table(claims: &[Claim]) -> String {
-    let mut text = String::from("| probability told | classes | mean told | right |\n|---|---:|---:|---|\n");
+    let mut text = String::from("| probability reported | classes | mean reported | right |\n|---|---:|---:|---|\n");
     for bin in bins(claims) {
         let [low, high] = interval(bin.right, bin.count).map(|bound| 100.0 * bound);
-        let Bin { from, to, count, right, told } = bin;
+        let Bin { from, to, count, right, reported } = bin;
         writeln!(
             text,
             "| {from} to {to} | {count} | {:.1} % | {right}, {:.1} % [{low:.0}-{high:.0} %] |",
-            100.0 * told,
+            100.0 * reported,
             100.0 * right as f64 / count as f64
         )
         .expect("a string takes all that is written to it");
@@ -84,13 +84,13 @@ pub fn diagram(claims: &[Claim]) -> String {
         add(format!("<text x=\"{}\" y=\"{}\" text-anchor=\"middle\">{tick}</text>", x(tick), end + 16.0));
         add(format!("<text x=\"{}\" y=\"{}\" text-anchor=\"end\">{tick}</text>", MARGIN - 6.0, y(tick) + 4.0));
     }
-    add(format!("<text x=\"{}\" y=\"{}\" text-anchor=\"middle\">probability told</text>", x(0.5), end + 36.0));
+    add(format!("<text x=\"{}\" y=\"{}\" text-anchor=\"middle\">probability reported</text>", x(0.5), end + 36.0));
     add(format!(
         "<text x=\"14\" y=\"{0}\" text-anchor=\"middle\" transform=\"rotate(-90 14 {0})\">share that is right</text>",
         y(0.5)
     ));
     for bin in bins(claims) {
-        let at = x(bin.told);
+        let at = x(bin.reported);
         let [low, high] = interval(bin.right, bin.count).map(y);
         let share = y(bin.right as f64 / bin.count as f64);
         add(format!("<line x1=\"{at:.1}\" y1=\"{low:.1}\" x2=\"{at:.1}\" y2=\"{high:.1}\" stroke=\"#0b62a4\"/>"));
@@ -114,7 +114,7 @@ mod tests {
         let bins = bins(&claims());
         let counts: Vec<(f64, usize, usize)> = bins.iter().map(|bin| (bin.from, bin.count, bin.right)).collect();
         assert_eq!(counts, [(0.5, 2, 1), (0.95, 1, 1), (0.999, 2, 2)]);
-        assert!((bins[0].told - 0.65).abs() < 1e-12);
+        assert!((bins[0].reported - 0.65).abs() < 1e-12);
     }
 
     #[test]

@@ -8,7 +8,7 @@ use std::{fs, process, thread};
 
 use clap::{Parser, ValueEnum};
 use indicatif::{ProgressBar, ProgressStyle};
-use robstiff_tests::matrix::{Case, Group, POSES, Record, groups, run_keeping, table};
+use robstiff_tests::matrix::{Case, Group, POSES, Record, groups, run_keeping, shares, table};
 use robstiff_tests::reliability::{self, Claim};
 
 /// Traces simulated campaigns with something hidden in them, and judges what is said of them
@@ -92,15 +92,13 @@ fn is_asked_for(group: Group, only: &[String]) -> bool {
 
 /// The groups' shares of the count, at least one each.
 fn cases(chosen: &[Group], arguments: &Arguments) -> Vec<Case> {
-    let all: usize = chosen.iter().map(|group| group.share()).sum();
-    let share = |group: &Group| (arguments.count * group.share()).div_ceil(all);
     let fits = |case: &Case| arguments.arm.is_none_or(|arm| case.six_axes == (arm == ArmName::Six));
-    let of = |&group: &Group| {
+    let of = |(group, count): (Group, usize)| {
         let endless =
             (0..).map(move |replicate| Case { poses: arguments.poses, ..Case::new(group, replicate, arguments.seed) });
-        endless.filter(fits).take(share(&group)).collect::<Vec<_>>()
+        endless.filter(fits).take(count).collect::<Vec<_>>()
     };
-    chosen.iter().flat_map(of).collect()
+    shares(chosen, arguments.count).flat_map(of).collect()
 }
 
 fn run_all(cases: &[Case], jobs: usize, keep: Option<&Path>) -> Vec<Record> {

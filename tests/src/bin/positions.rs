@@ -1,10 +1,9 @@
 //! Traces simulated campaigns of absolute positions by the hundred and counts what
 //! came of them.
 
-use std::thread;
-
 use clap::Parser;
 use robstiff_tests::matrix::interval::interval;
+use robstiff_tests::parallel;
 use robstiff_tests::positions::{Came, Drawn, draw, run};
 use robstiff_tests::reliability;
 
@@ -43,7 +42,7 @@ fn main() {
     for (group, (name, effects, outside)) in (0..).zip(GROUPS) {
         let seeds = (0..arguments.count).map(|run| arguments.seed * 1_000_000 + group * 100_000 + run);
         let drawn: Vec<Drawn> = seeds.map(|seed| draw(effects, outside, seed)).filter(|drawn| drawn.matters).collect();
-        let came = all(&drawn, arguments.jobs.max(1));
+        let came = parallel::each(&drawn, arguments.jobs, run);
         let is_right = |came: &&Came| if outside { !came.whole_truth } else { came.right };
         let right = came.iter().filter(is_right).count();
         for came in came.iter().filter(|came| arguments.wrong && !is_right(came)) {
@@ -58,14 +57,4 @@ fn main() {
     }
     println!("\nIntervals of 95 % held the truth for {} of {} numbers.", numbers[1], numbers[0]);
     print!("\n{}", reliability::table(&claims));
-}
-
-/// What came of each, some at a time.
-fn all(drawn: &[Drawn], jobs: usize) -> Vec<Came> {
-    let share = drawn.len().div_ceil(jobs).max(1);
-    thread::scope(|scope| {
-        let work = |share: &'_ [Drawn]| share.iter().map(run).collect::<Vec<Came>>();
-        let threads: Vec<_> = drawn.chunks(share).map(|share| scope.spawn(move || work(share))).collect();
-        threads.into_iter().flat_map(|thread| thread.join().expect("no thread panics")).collect()
-    })
 }

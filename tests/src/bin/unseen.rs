@@ -1,18 +1,19 @@
-//! Holds the error on unseen poses that a trace tells against the error on poses that were kept from it.
+//! Holds the error on unseen poses that a trace reports against the error on poses that were kept from it.
 
 use std::path::PathBuf;
+use std::process;
 use std::time::Instant;
-use std::{process, thread};
 
 use clap::Parser;
 use robstiff_identify::campaign::{Campaign, Data, Holdout};
 use robstiff_identify::trace::{Options, Trace, Verdict, trace};
-use robstiff_tests::matrix::{Case, groups, run};
+use robstiff_tests::matrix::{Case, groups, run, shares};
+use robstiff_tests::parallel;
 
-/// Holds the error on unseen poses that a trace tells against the error on poses that were kept from it
+/// Holds the error on unseen poses that a trace reports against the error on poses that were kept from it
 ///
-/// Of campaigns that are given: told with all poses, against the mean over three thirds that are held out.
-/// Without any, of simulated ones: told with 40 poses, against 20 more that are held out.
+/// Of campaigns that are given: reported with all poses, against the mean over three thirds that are held out.
+/// Without any, of simulated ones: reported with 40 poses, against 20 more that are held out.
 #[derive(Parser)]
 #[command(name = "unseen")]
 struct Arguments {
@@ -38,7 +39,7 @@ fn main() {
         simulated(&arguments);
         return;
     }
-    println!("| campaign | rows | declared [mm] | told [mm] | held out [mm] | told / held out | verdict | s |");
+    println!("| campaign | rows | declared [mm] | reported [mm] | held out [mm] | reported / held out | verdict | s |");
     println!("|---|---:|---:|---:|---:|---:|---|---:|");
     arguments.campaigns.iter().for_each(measured);
 }
@@ -70,7 +71,7 @@ fn measured(path: &PathBuf) {
     let found = traced(&campaign);
     let seconds = begun.elapsed().as_secs_f64();
     let squares: f64 = (1..=3).map(|seed| held_out(&campaign, seed).powi(2)).sum();
-    let [told, truly] = [found.after.holdout_rms, (squares / 3.0).sqrt()];
+    let [reported, truly] = [found.after.holdout_rms, (squares / 3.0).sqrt()];
     // An rms is over three axes.
     let mm = |rms: f64| 1e3 * 3.0_f64.sqrt() * rms;
     println!(
@@ -78,35 +79,26 @@ fn measured(path: &PathBuf) {
         path.display(),
         found.rows,
         mm(found.declared.rms),
-        mm(told),
+        mm(reported),
         mm(truly),
-        told / truly,
+        reported / truly,
         found.verdict,
     );
 }
 
 /// What came of all simulated campaigns together.
 fn simulated(arguments: &Arguments) {
-    let all: usize = groups().iter().map(|group| group.share()).sum();
-    let share = |share: usize| (arguments.count * share).div_ceil(all);
-    let cases: Vec<Case> = groups()
-        .into_iter()
-        .flat_map(|group| (0..share(group.share())).map(move |replicate| (group, replicate)))
-        .map(|(group, replicate)| Case::new(group, replicate, arguments.seed))
+    let cases: Vec<Case> = shares(&groups(), arguments.count)
+        .flat_map(|(group, count)| (0..count).map(move |replicate| Case::new(group, replicate, arguments.seed)))
         .collect();
-    let part = cases.len().div_ceil(arguments.jobs.max(1)).max(1);
-    let ratios: Vec<f64> = thread::scope(|scope| {
-        let each = |cases: &[Case]| cases.iter().filter_map(ratio).collect::<Vec<f64>>();
-        let threads: Vec<_> = cases.chunks(part).map(|cases| scope.spawn(move || each(cases))).collect();
-        threads.into_iter().flat_map(|thread| thread.join().expect("no thread panics")).collect()
-    });
+    let ratios: Vec<f64> = parallel::each(&cases, arguments.jobs, ratio).into_iter().flatten().collect();
     let count = ratios.len() as f64;
     let logs: Vec<f64> = ratios.iter().map(|ratio| ratio.ln()).collect();
     let mean = logs.iter().sum::<f64>() / count;
     let spread = (logs.iter().map(|log| (log - mean).powi(2)).sum::<f64>() / (count - 1.0)).sqrt();
     let off = 1.96 * spread / count.sqrt();
     println!(
-        "{} campaigns: the error told over that on poses held out is {:.3} (geometric mean; 95 % interval {:.3} to {:.3}), \
+        "{} campaigns: the error reported over that on poses held out is {:.3} (geometric mean; 95 % interval {:.3} to {:.3}), \
          one by one it scatters by {:.0} %.",
         ratios.len(),
         mean.exp(),
@@ -116,12 +108,12 @@ fn simulated(arguments: &Arguments) {
     );
 }
 
-/// What is told over what is true; none where the data cannot tell.
+/// What is reported over what is true; none where the data cannot tell.
 fn ratio(case: &Case) -> Option<f64> {
     let ready = case.clone().ready();
     let mut scenario = ready.scenario;
-    let told = traced(&run::read(&scenario.run(), &ready.declared));
+    let reported = traced(&run::read(&scenario.run(), &ready.declared));
     scenario.poses += scenario.poses / 2;
     let truly = held_out(&run::read(&scenario.run(), &ready.declared), 1);
-    (told.verdict != Verdict::Insufficient).then(|| told.after.holdout_rms / truly)
+    (reported.verdict != Verdict::Insufficient).then(|| reported.after.holdout_rms / truly)
 }

@@ -82,6 +82,12 @@ impl Group {
     }
 }
 
+/// So many campaigns of each of some groups, at least one: their shares of a count.
+pub fn shares(groups: &[Group], count: usize) -> impl Iterator<Item = (Group, usize)> {
+    let all: usize = groups.iter().map(|group| group.share()).sum();
+    groups.iter().map(move |&group| (group, (count * group.share()).div_ceil(all)))
+}
+
 /// All groups.
 pub fn groups() -> Vec<Group> {
     let mut all = vec![Group::Nothing];

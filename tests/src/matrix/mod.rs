@@ -10,5 +10,5 @@ pub mod table;
 pub mod truths;
 pub mod visible;
 
-pub use case::{Case, Expected, Group, POSES, Ready, groups};
+pub use case::{Case, Expected, Group, POSES, Ready, groups, shares};
 pub use run::{Record, run, run_keeping};

@@ -40,7 +40,7 @@ pub struct Record {
     pub numbers: Vec<Held>,
     /// The same of joints' compliances.
     pub joints: Vec<Held>,
-    /// The classes that a probability is told of.
+    /// The classes that a probability is reported of.
     pub claims: Vec<Claim>,
     /// How long tracing took (s).
     pub seconds: f64,

@@ -1,4 +1,4 @@
-//! How often the intervals that are told hold the truth.
+//! How often the intervals that are reported hold the truth.
 
 use std::string::String;
 

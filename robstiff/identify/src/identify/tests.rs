@@ -323,7 +323,7 @@ fn poses_held_out_have_no_part_in_the_fit() {
     assert_eq!(estimates(1.0), estimates(20.0));
 }
 
-/// What is told of the error is that of the description that is written.
+/// The error that is reported is that of the description that is written.
 #[test]
 fn the_error_is_that_of_the_description() {
     let robot = {
