@@ -82,21 +82,19 @@ fn frame(file: &ModesFile) -> &'static str {
 /// What was fitted; null of modes that were not.
 pub fn document(file: &ModesFile) -> Value {
     let Some((path, fit)) = &file.fit else { return Value::Null };
-    let spring = |stiffness: f64, direction: &Vector3<f64>| {
-        json!({
-            "stiffness_N_per_m": number(stiffness),
-            "direction": numbers(direction.iter().copied()),
-        })
-    };
     let modes = file.modes.iter().map(|mode| {
-        let mut document = json!({
+        json!({
             "frequency_Hz": number(mode.frequency / TAU),
             "damping": number(mode.damping),
-        });
-        for (key, value) in spring(mode.stiffness, &mode.direction).as_object().into_iter().flatten() {
-            document[key] = value.clone();
-        }
-        document
+            "stiffness_N_per_m": number(mode.stiffness),
+            "direction": numbers(mode.direction.iter().copied()),
+        })
+    });
+    let massless = file.massless.iter().map(|spring| {
+        json!({
+            "stiffness_N_per_m": number(spring.stiffness),
+            "direction": numbers(spring.direction.iter().copied()),
+        })
     });
     json!({
         "file": path.display().to_string(),
@@ -108,6 +106,6 @@ pub fn document(file: &ModesFile) -> Value {
         "below": number(fit.below),
         "frame": frame(file),
         "modes": modes.collect::<Value>(),
-        "massless": file.massless.iter().map(|Spring { stiffness, direction }| spring(*stiffness, direction)).collect::<Value>(),
+        "massless": massless.collect::<Value>(),
     })
 }

@@ -5,11 +5,7 @@ mod common;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use common::{Ran, fail, folder, inside, json, run, succeed};
-
-fn file(name: &str) -> String {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/commands/files").join(name).to_str().unwrap().to_owned()
-}
+use common::{Ran, fail, file, folder, inside, json, run, succeed};
 
 fn write(folder: &Path, name: &str, text: &str) -> String {
     let path = folder.join(name);

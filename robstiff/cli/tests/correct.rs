@@ -5,16 +5,12 @@ mod common;
 use std::fs;
 use std::path::Path;
 
-use common::{fail, folder, inside, json, names, run, succeed};
+use common::{fail, file, folder, inside, json, names, run, succeed};
 use robstiff_machining::program::{Document, Language, Target, TextFile, read};
 use robstiff_robots::catalogue;
 
 /// Where the pocket stands, and the same as a work frame.
 const PLACE: &str = "200 mm, 0, 100 mm, 0, 0, 0";
-
-fn file(name: &str) -> String {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/commands/files").join(name).to_str().unwrap().to_owned()
-}
 
 /// The KR 270 with a controller and a zero that is off.
 fn arm(folder: &Path, more: &str) -> String {

@@ -6,12 +6,8 @@ use std::fs;
 use std::path::Path;
 use std::sync::OnceLock;
 
-use common::{fail, folder, inside, json, run, succeed};
+use common::{fail, file, folder, inside, json, run, succeed};
 use serde_json::Value;
-
-fn file(name: &str) -> String {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/commands/files").join(name).to_str().unwrap().to_owned()
-}
 
 /// The documents of a run along the pocket, with more options.
 fn along(robot: &str, folder: &str, more: &[&str]) -> Value {

@@ -5,7 +5,7 @@ mod common;
 use std::fs;
 use std::path::Path;
 
-use common::{fail, folder, inside, json, keys, run, succeed};
+use common::{fail, file, folder, inside, json, keys, run, succeed};
 
 fn pocket() -> String {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/commands/files/pocket.csv").to_str().unwrap().to_owned()
@@ -59,11 +59,6 @@ fn a_path_is_placed_and_begun_as_asked() {
     assert!(said.contains("--place gives 3 numbers, six are needed"), "{said}");
     let said = fail(2, &["path", "kuka-kr270-r2700", &pocket(), "--start", "0,0"]);
     assert!(said.contains("--start gives 2 joint coordinates"), "{said}");
-}
-
-/// A cut beside the example files.
-fn file(name: &str) -> String {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/commands/files").join(name).to_str().unwrap().to_owned()
 }
 
 #[test]

@@ -94,3 +94,24 @@ pub fn copy(folder: &Path) -> String {
     fs::write(folder.join("campaign.yaml"), campaign).unwrap();
     inside(folder, "campaign.yaml")
 }
+
+/// A file beside the pages of the commands.
+pub fn file(name: &str) -> String {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/commands/files").join(name).to_str().unwrap().to_owned()
+}
+
+/// A file of the pages with some of its text replaced.
+pub fn changed(folder: &Path, name: &str, [from, to]: [&str; 2]) -> String {
+    let text = fs::read_to_string(file(name)).unwrap();
+    assert!(text.contains(from), "{name} has no {from}");
+    let path = inside(folder, name);
+    fs::write(&path, text.replace(from, to)).unwrap();
+    path
+}
+
+/// The arm of the pages' URDF file, all rigid.
+pub fn rigid(folder: &Path) -> String {
+    let arm = inside(folder, "arm.yaml");
+    assert_eq!(run(&["import", &file("arm.urdf"), "--tip", "cutter_tip", "--out", &arm]).code, 0);
+    arm
+}
