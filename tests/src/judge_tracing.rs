@@ -119,9 +119,19 @@ pub fn claims(trace: &Trace, hidden: &[String], would_do: impl Fn(&str, usize) -
         let mut pairs = class.iter().flat_map(|(member, _)| (0..hidden.len()).map(move |index| (member, index)));
         pairs.any(|(member, index)| *member == hidden[index] || would_do(member, index))
     };
-    let named = trace.effects.iter().map(|of| (of.probability, is_there(&of.class)));
-    let suspected = trace.suspected.iter().map(|of| (of.probability, is_there(&of.class)));
-    named.chain(suspected).map(|(probability, is_right)| Claim { probability, is_right }).collect()
+    let named = trace.effects.iter().map(|of| Claim {
+        name: of.effect.to_string(),
+        probability: of.probability,
+        why_not: None,
+        is_right: is_there(&of.class),
+    });
+    let suspected = trace.suspected.iter().map(|of| Claim {
+        name: of.effect.to_string(),
+        probability: of.probability,
+        why_not: Some(of.why_not.clone()),
+        is_right: is_there(&of.class),
+    });
+    named.chain(suspected).collect()
 }
 
 /// Whether the hidden things from `index` on can each have a name that is not

@@ -195,10 +195,11 @@ pub fn run(drawn: &Drawn) -> Came {
     let numbers = if right && each { numbers(&trace, hidden) } else { [0; 2] };
     let names = |names: Vec<String>| names.join(" + ");
     let told = format!(
-        "seed {}: {}; told {}: {}",
+        "seed {}: {}; told {} ({}): {}",
         drawn.positions.seed,
         names(hidden.iter().map(Hidden::name).collect()),
         trace.verdict,
+        trace.why,
         names(told.into_iter().map(|name| name.name).collect())
     );
     let whole_truth = matches!(trace.verdict, Verdict::Explained | Verdict::Adequate);

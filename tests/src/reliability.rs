@@ -7,10 +7,14 @@ use std::fmt::Write as _;
 use crate::matrix::interval::interval;
 
 /// Something that is reported with a probability, and whether it is so.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Claim {
+    /// Its full name.
+    pub name: String,
     /// What is reported.
     pub probability: f64,
+    /// What keeps it from being named; none where it is.
+    pub why_not: Option<String>,
     /// Whether it is so.
     pub is_right: bool,
 }
@@ -105,7 +109,7 @@ mod tests {
     use super::*;
 
     fn claims() -> Vec<Claim> {
-        let claim = |probability, is_right| Claim { probability, is_right };
+        let claim = |probability, is_right| Claim { name: String::new(), probability, why_not: None, is_right };
         vec![claim(0.6, true), claim(0.7, false), claim(0.9995, true), claim(1.0, true), claim(0.95, true)]
     }
 

@@ -33,7 +33,7 @@ struct Arguments {
     /// Threads
     #[arg(long, default_value_t = 2)]
     jobs: usize,
-    /// Where all runs are written, and beside it all numbers with an interval
+    /// Where all runs are written, and beside it all numbers with an interval and all classes
     #[arg(long, default_value = "target/matrix.csv")]
     csv: PathBuf,
     /// Where the reliability diagram is drawn
@@ -63,7 +63,7 @@ fn main() {
     print!("{}", table::markdown(&records));
     // What is outside the catalogue has no probability: that of a name is of the candidates that there are.
     let inside = records.iter().filter(|record| !record.ready.case.group.hides_what_is_outside());
-    let claims: Vec<Claim> = inside.flat_map(|record| record.claims.iter().copied()).collect();
+    let claims: Vec<Claim> = inside.flat_map(|record| record.claims.iter().cloned()).collect();
     print!("\n{}", reliability::table(&claims));
     if let Some(folder) = arguments.csv.parent() {
         fs::create_dir_all(folder).unwrap_or_else(|problem| fail(&arguments.csv, &problem));
@@ -71,6 +71,7 @@ fn main() {
     let write = |path: &Path, text: String| fs::write(path, text).unwrap_or_else(|problem| fail(path, &problem));
     write(&arguments.csv, table::csv(&records));
     write(&arguments.csv.with_extension("numbers.csv"), table::numbers_csv(&records));
+    write(&arguments.csv.with_extension("claims.csv"), table::claims_csv(&records));
     if let Some(path) = &arguments.diagram {
         write(path, reliability::diagram(&claims));
     }

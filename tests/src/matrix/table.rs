@@ -6,6 +6,7 @@ use super::case::Group;
 use super::interval::interval;
 use super::run::Record;
 use crate::judge_tracing::{Held, within};
+use crate::simulator::Hidden;
 
 /// The table of all records, a line a group and some for several together.
 pub fn markdown(records: &[Record]) -> String {
@@ -70,6 +71,32 @@ fn row(name: &str, records: &[&Record]) -> String {
         held(&|record| &record.numbers),
         held(&|record| &record.joints),
     )
+}
+
+/// All classes that a probability is reported of, a line each.
+pub fn claims_csv(records: &[Record]) -> String {
+    let mut text = String::from("group,replicate,seed,hidden,verdict,class,probability,right,why_not\n");
+    for record in records {
+        let case = &record.ready.case;
+        let hidden: Vec<String> = record.ready.scenario.hidden.iter().map(Hidden::name).collect();
+        let verdict = record.told.as_ref().map_or(String::new(), |told| told.verdict.to_string());
+        for claim in &record.claims {
+            writeln!(
+                text,
+                "{},{},{},{},{verdict},{},{:.6},{},\"{}\"",
+                case.group.name(),
+                case.replicate,
+                case.seed,
+                hidden.join(" + ").replace(',', "-"),
+                claim.name.replace(',', "-"),
+                claim.probability,
+                claim.is_right,
+                claim.why_not.as_deref().unwrap_or_default()
+            )
+            .expect("a string takes all that is written to it");
+        }
+    }
+    text
 }
 
 /// All records, a line each.

@@ -3,10 +3,11 @@
 //!
 //! - A model that leaves out a number that was hidden, a link's torsion beside its
 //!   bending, has others in its place; so does one with fewer play operators, or of
-//!   other radii. Their values are those of another model, as are those of a drift
-//!   that is told to follow something else, and of a creep. Then neither the joints are compared nor the numbers of
+//!   other radii. Their values are those of another model. Then neither the joints are compared nor the numbers of
 //!   that effect nor, where it is the operators that are fewer, anything of that
 //!   joint. A soft base and a soft tool share one translation.
+//! - A drift moves a reading by how much warmer it was than at the unloaded one, hours before: a file says when the
+//!   former was taken, and the numbers of a trace are of that. Creep is told by another law of time.
 //! - A load cell of which all axes read too much by the same factor is the same as
 //!   softer joints, so a trace tells the scale of two axes against the third, and
 //!   all loads and compliances as that one has them.
@@ -15,7 +16,7 @@
 //!   compared.
 
 use crate::judge_tracing::{Name, Told};
-use crate::simulator::{Follows, Hidden};
+use crate::simulator::Hidden;
 
 /// What numbers should come out.
 #[derive(Clone, Debug, PartialEq)]
@@ -39,13 +40,12 @@ impl Truths {
         let mut whole = cells < 2;
         for one in hidden {
             let (name, Some(told)) = (one.name(), named(one)) else { continue };
-            whole &= tells_all(one, told) && same_operators(one, Some(told)) && same_course(one, told);
+            whole &= tells_all(one, told) && same_operators(one, Some(told)) && same_radii(one, told);
             let is_another = others.contains(&one.place())
                 || !tells_all(one, told)
-                || !same_course(one, told)
                 || !same_radii(one, told)
-                // A trace has the growth over a factor of e from a minute on, not over ten from the onset.
-                || matches!(one, Hidden::Creep { .. });
+                // A trace has the growth over a factor of e, and what drifted between a reading and the unloaded one.
+                || matches!(one, Hidden::Creep { .. } | Hidden::ThermalDrift { .. });
             if is_another || (cells > 1 && name.starts_with("load_cell")) {
                 continue;
             }
@@ -83,14 +83,6 @@ fn same_operators(hidden: &Hidden, told: Option<&Name>) -> bool {
     let Hidden::Hysteresis { operators, .. } = hidden else { return true };
     let of = |told: &Name| told.parameters.iter().filter(|number| number.name.starts_with("weight")).count();
     told.is_some_and(|told| of(told) == operators.len())
-}
-
-/// Whether a drift is told to follow what it does follow. One that a trace tells by the time is by that from the
-/// first row to the last, and has no rate.
-fn same_course(hidden: &Hidden, told: &Name) -> bool {
-    let Hidden::ThermalDrift { follows, .. } = hidden else { return true };
-    *follows == Follows::Temperature
-        && told.parameters.iter().find(|number| number.name == "dx").is_some_and(|number| number.unit == "m/K")
 }
 
 /// Whether play operators are told with the radii that they have: weights of others are other numbers.

@@ -26,7 +26,7 @@ pub static KIND: Kind = Kind {
 /// The first line after it.
 pub(super) const FROM: &str = "from_line";
 
-/// How far something is likely to slip (m), and to turn about the middle of the arm's reach (rad).
+/// How far something is likely to slip (m), and to turn about the base (rad).
 const LIKELY: f64 = 1e-4;
 const LIKELY_TURN: f64 = 1e-4;
 
@@ -34,18 +34,23 @@ fn offer(scene: &Scene<'_>, offers: &mut Offers) {
     if scene.what == What::Clamped || scene.visits < FEWEST_VISITS {
         return;
     }
-    let form = |(from, between): (usize, bool)| {
+    let form = |(from, between): (usize, bool), turns: bool| {
         let after = move |at: &At<'_>| if at.row >= from { 1.0 } else { 0.0 };
         let mut parameters = three_readings(SHIFT, "m", LIKELY, after);
-        if scene.what == What::Positions {
+        if turns {
             let turn = |k: usize| {
-                let of = move |at: &At<'_>| Vector3::ith(k, after(at)).cross(&at.place);
+                let of = move |at: &At<'_>| Vector3::ith(k, after(at)).cross(&at.stand.tcp.at);
                 Parameter::new(TURN[k], "rad", Size::Of(LIKELY_TURN), Term::Reading(Rc::new(of)))
             };
             parameters.extend((0..3).map(turn));
         }
-        let form = Form::new(format!("from row {from}"), parameters).with(FROM, scene.line(from), "1");
+        let label = if turns { "shift and turn" } else { "shift" };
+        let form = Form::new(format!("{label} from row {from}"), parameters).with(FROM, scene.line(from), "1");
         Form { between, ..form }
     };
-    offers.add(Part::Base, scene.moments().into_iter().map(form).collect());
+    // A turn is tried where something slipped, and everywhere only where there are few columns otherwise.
+    let turns = |(_, near): &(usize, bool)| *near || scene.what == What::Positions;
+    let moments = scene.moments();
+    let turned = moments.iter().filter(|moment| turns(moment)).map(|moment| form(*moment, true));
+    offers.add(Part::Base, moments.iter().map(|moment| form(*moment, false)).chain(turned).collect());
 }

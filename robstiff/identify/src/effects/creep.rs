@@ -6,7 +6,8 @@ use robstiff_robots::Place as Part;
 
 use super::scene::What;
 use super::{Form, Kind, Offers, Place, Scene, Side};
-use crate::model::{At, Parameter, Size, Term, Torques};
+use crate::model::law::turns_on;
+use crate::model::{Parameter, Size, Term};
 
 /// The kind.
 pub static KIND: Kind = Kind {
@@ -24,8 +25,9 @@ pub static KIND: Kind = Kind {
 /// The likely part by which a displacement grows over a factor of e in time (1).
 const LIKELY: f64 = 0.05;
 
-/// The time after which it is seen (s).
-const ONSET: f64 = 60.0;
+/// Times after which it is seen that are tried (s), and that of readings without a time.
+const ONSETS: [f64; 3] = [3.0, 14.0, 60.0];
+const A_READING: f64 = 60.0;
 
 fn offer(scene: &Scene<'_>, offers: &mut Offers) {
     if scene.visits >= scene.visit.len() {
@@ -33,33 +35,29 @@ fn offer(scene: &Scene<'_>, offers: &mut Offers) {
     }
     match scene.what {
         What::Displacements => {
-            let grows = |at: &At<'_>| (at.in_visit / ONSET).ln_1p();
-            let share = Parameter::new("share", "1", Size::Of(LIKELY), Term::Gain(Rc::new(grows))).nonnegative();
-            offers.add(Place::Rig, vec![Form::new("", vec![share])]);
+            let form = |onset: f64| {
+                let grows = move |since: f64| (since / onset).ln_1p();
+                let term = Term::Creep(Rc::new(grows));
+                let share = Parameter::new("share", "1", Size::Of(LIKELY), term).nonnegative();
+                Form::new(format!("onset {onset} s"), vec![share]).with("onset", onset, "s")
+            };
+            let found = scene.found("onset", Place::Rig).into_iter();
+            let between = found.map(|onset| Form { between: true, ..form(onset) });
+            offers.add(Place::Rig, ONSETS.into_iter().map(form).chain(between).collect());
         }
         What::Clamped => {
-            let own = scene.compliance.clone();
-            let law = move |joint: usize, torques: &Torques<'_>| crept(torques, own[joint - 1]);
-            let share = Parameter::new("share", "1", Size::Of(LIKELY), Term::Laws(Rc::new(law))).nonnegative();
-            offers.add(Place::Rig, vec![Form::new("", vec![share])]);
+            let law = |joint: usize| turns_on(scene.compliance[joint - 1], |since| (since / A_READING).ln_1p());
+            let of_all: Vec<_> = scene.joints().map(law).collect();
+            let of_all = Term::Laws(Rc::new(move |joint: usize, torques| of_all[joint - 1](torques)));
+            let form = |term| {
+                let share = Parameter::new("share", "1", Size::Of(LIKELY), term).nonnegative();
+                vec![Form::new("", vec![share])]
+            };
+            offers.add(Place::Rig, form(of_all));
             for &axis in &scene.axes {
-                let own = scene.compliance[axis - 1];
-                let law = move |torques: &Torques<'_>| crept(torques, own);
-                let share = Parameter::new("share", "1", Size::Of(LIKELY), Term::Law(axis, Rc::new(law))).nonnegative();
-                offers.add(Part::Joint(axis), vec![Form::new("", vec![share])]);
+                offers.add(Part::Joint(axis), form(Term::Law(axis, law(axis))));
             }
         }
         What::Positions => {}
     }
-}
-
-/// Every step of a load goes on turning the joint by the time since it was made.
-fn crept(torques: &Torques<'_>, own: f64) -> Vec<f64> {
-    let load = torques.load;
-    let step = |k: usize| load[k] - if k == 0 { 0.0 } else { load[k - 1] };
-    let grown = |row: usize| -> f64 {
-        let since = |k: usize| (row - k + 1) as f64;
-        (0..=row).map(|k| own * step(k) * since(k).ln_1p()).sum()
-    };
-    (0..load.len()).map(grown).collect()
 }

@@ -5,7 +5,6 @@ use robstiff_robots::Place as Part;
 use super::scene::What;
 use super::transmission_error::waves;
 use super::{Form, Kind, Offers, Scene, Side};
-use crate::model::{Parameter, Size};
 
 /// The kind.
 pub static KIND: Kind = Kind {
@@ -24,8 +23,7 @@ fn offer(scene: &Scene<'_>, offers: &mut Offers) {
         return;
     }
     for joint in scene.turning() {
-        let waves = (3..=6).flat_map(|order| waves(joint, order));
-        let waves = waves.map(|wave| Parameter { size: Size::Of(LIKELY), ..wave });
+        let waves = (3..=6).flat_map(|order| waves(joint, order, LIKELY));
         offers.add(Part::Joint(joint), vec![Form::new("", waves.collect())]);
     }
 }

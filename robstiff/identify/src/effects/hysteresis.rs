@@ -44,8 +44,8 @@ fn offer(scene: &Scene<'_>, offers: &mut Offers) {
             form.written(move |weights| written(joint, &radii, weights))
         };
         let grid = RADII.iter().map(|radius| form(&[*radius])).chain([form(&THREE)]);
-        let found: Vec<f64> = scene.found(KIND.name, joint).collect();
-        let between = found.into_iter().map(|radius| Form { between: true, ..form(&[radius]) });
+        let found = scene.found(NAMES[0], Part::Joint(joint)).into_iter();
+        let between = found.map(|radius| Form { between: true, ..form(&[radius / largest]) });
         offers.add(Part::Joint(joint), about_weight(scene, grid.chain(between).collect()));
     }
 }

@@ -40,7 +40,7 @@ fn offer(scene: &Scene<'_>, offers: &mut Offers) {
 fn under_loads(scene: &Scene<'_>, joint: usize) -> Vec<Form> {
     let size = 0.2 * scene.compliance[joint - 1] * scene.torque[joint - 1];
     let number = move |law| Parameter::new("gap", "rad", Size::Of(size), Term::Law(joint, law)).nonnegative();
-    curves(scene, (&KIND, joint), &KNEES, number, move |gap, knee| Effect::LostMotion { joint, gap, knee })
+    curves(scene, joint, &KNEES, number, move |gap, knee| Effect::LostMotion { joint, gap, knee })
 }
 
 /// The weight of the arm rests on one flank of a gear or on the other, and the joint (from 1) stands

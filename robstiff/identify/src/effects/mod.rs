@@ -9,21 +9,25 @@ mod approach;
 mod base_compliance;
 mod base_slip;
 mod creep;
+mod depends_on_other;
 mod dh_error;
 mod encoder_scale;
 mod gravity_sag;
 mod grows_with_load;
 mod grows_with_place;
+mod hardening;
 mod harmonics;
 mod hysteresis;
 mod joint_coupling;
 mod joint_zero_offset;
 mod kinematic_coupling;
+mod lagging;
 mod lever_arm;
 mod link_compliance;
 mod load_cell_bias;
 mod load_cell_misalignment;
 mod load_cell_scale;
+mod load_friction;
 mod lost_motion;
 mod outliers;
 mod own_weight;
@@ -56,7 +60,7 @@ use crate::model::law::under_weight;
 use crate::model::{Parameter, Size, Term};
 
 /// Every kind there is.
-pub static REGISTRY: [&Kind; 36] = [
+pub static REGISTRY: [&Kind; 40] = [
     &thermal_drift::KIND,
     &creep::KIND,
     &load_cell_bias::KIND,
@@ -90,8 +94,12 @@ pub static REGISTRY: [&Kind; 36] = [
     &approach::KIND,
     &harmonics::KIND,
     &grows_with_load::KIND,
+    &load_friction::KIND,
     &grows_with_place::KIND,
     &quadratic::KIND,
+    &depends_on_other::KIND,
+    &lagging::KIND,
+    &hardening::KIND,
     &wandering::KIND,
 ];
 
@@ -196,6 +204,8 @@ pub struct Form {
     pub between: bool,
     /// Full names of effects that do exactly the same, and are no candidates of their own therefore.
     pub same: Vec<&'static str>,
+    /// The joint (from 1) of whose likely compliance the parameters are shares.
+    pub share_of: Option<usize>,
 }
 
 /// Forms of laws of a gear, each about the load alone and, where gears may carry a weight, about all of that.
@@ -219,7 +229,15 @@ impl fmt::Debug for Form {
 impl Form {
     /// A form with these parameters.
     pub fn new(label: impl Into<String>, parameters: Vec<Parameter>) -> Self {
-        Self { label: label.into(), parameters, shape: Vec::new(), written: None, between: false, same: Vec::new() }
+        Self {
+            label: label.into(),
+            parameters,
+            shape: Vec::new(),
+            written: None,
+            between: false,
+            same: Vec::new(),
+            share_of: None,
+        }
     }
 
     /// The same, which a description writes so.
@@ -233,6 +251,14 @@ impl Form {
     #[must_use]
     pub fn same_as(mut self, name: &'static str) -> Self {
         self.same.push(name);
+        self
+    }
+
+    /// The same with parameters that are shares of the likely compliance of a joint (from 1): a report has them of what
+    /// was fitted.
+    #[must_use]
+    pub fn share_of(mut self, joint: usize) -> Self {
+        self.share_of = Some(joint);
         self
     }
 

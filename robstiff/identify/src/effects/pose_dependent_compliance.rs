@@ -25,7 +25,6 @@ fn offer(scene: &Scene<'_>, offers: &mut Offers) {
         return;
     }
     for joint in scene.turning().into_iter().filter(|&joint| scene.is_driven(joint)) {
-        // The parameters are shares of this.
         let own = scene.compliance[joint - 1];
         let wave = |name, order: f64, sine: bool| {
             let law = move |torques: &Torques<'_>| {
@@ -37,18 +36,16 @@ fn offer(scene: &Scene<'_>, offers: &mut Offers) {
             };
             Parameter::new(name, "1", Size::Of(LIKELY), Term::Law(joint, Rc::new(law)))
         };
-        let once = || vec![wave("cos1", 1.0, false), wave("sin1", 1.0, true)];
-        let twice = || vec![wave("cos2", 2.0, false), wave("sin2", 2.0, true)];
+        let once = vec![wave("cos1", 1.0, false), wave("sin1", 1.0, true)];
+        let twice = vec![wave("cos2", 2.0, false), wave("sin2", 2.0, true)];
+        let both = once.iter().chain(&twice).cloned().collect();
         let written =
             move |cos1, sin1, cos2, sin2| vec![Effect::PoseDependentCompliance { joint, cos1, sin1, cos2, sin2 }];
-        offers.add(
-            Part::Joint(joint),
-            vec![
-                Form::new("once a turn", once()).written(move |v| written(v[0], v[1], 0.0, 0.0)),
-                Form::new("twice a turn", twice()).written(move |v| written(0.0, 0.0, v[0], v[1])),
-                Form::new("both", once().into_iter().chain(twice()).collect())
-                    .written(move |v| written(v[0], v[1], v[2], v[3])),
-            ],
-        );
+        let forms = [
+            Form::new("once a turn", once).written(move |v| written(v[0], v[1], 0.0, 0.0)),
+            Form::new("twice a turn", twice).written(move |v| written(0.0, 0.0, v[0], v[1])),
+            Form::new("both", both).written(move |v| written(v[0], v[1], v[2], v[3])),
+        ];
+        offers.add(Part::Joint(joint), forms.map(|form| form.share_of(joint)).to_vec());
     }
 }

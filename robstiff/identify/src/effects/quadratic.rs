@@ -1,4 +1,4 @@
-//! Without a name: something at the tool that yields with the square of the load.
+//! Without a name: a joint that yields more one way than the other.
 
 use std::rc::Rc;
 

@@ -5,6 +5,7 @@ use std::collections::BTreeSet;
 use robstiff::JointKind;
 use robstiff_robots::Description;
 
+use super::Place;
 use crate::model::Weight;
 
 /// The compliance of a joint that nothing is known of (rad/Nm).
@@ -25,11 +26,12 @@ pub enum What {
     Clamped,
 }
 
-/// Shapes beyond the grids: knees, radii and moments near those of a model that was found.
+/// Shapes beyond the grids: knees, radii, times and moments near those of a model that was found.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Shapes {
-    /// Of the law of a joint: the kind, the joint (from 1), and the shape over the largest torque.
-    pub of_laws: Vec<(&'static str, usize, f64)>,
+    /// Numbers that are chosen and not fitted: their name, where, and what they are. What has a number of the same name
+    /// at a place looks alike, so all of them are offered there.
+    pub numbers: Vec<(&'static str, Place, f64)>,
     /// Rows from which on something slipped.
     pub moments: BTreeSet<usize>,
 }
@@ -120,10 +122,11 @@ impl Scene<'_> {
         if self.turns(joint) { "rad/Nm" } else { "m/N" }
     }
 
-    /// Shapes of the law of a joint (from 1) that were found, over its largest torque.
-    pub fn found(&self, kind: &'static str, joint: usize) -> impl Iterator<Item = f64> + '_ {
-        let own = move |(of, at, _): &&(&str, usize, f64)| *of == kind && *at == joint;
-        self.shapes.of_laws.iter().filter(own).map(|(_, _, shape)| *shape)
+    /// What a number that is chosen and not fitted may be at a place beside what a grid has of it.
+    pub fn found(&self, number: &'static str, place: impl Into<Place>) -> Vec<f64> {
+        let place = place.into();
+        let own = |(of, at, _): &&(&str, Place, f64)| *of == number && *at == place;
+        self.shapes.numbers.iter().filter(own).map(|(_, _, shape)| *shape).collect()
     }
 
     /// The rows from which on something may have slipped: the first rows of some twenty visits, and

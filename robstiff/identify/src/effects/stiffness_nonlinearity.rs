@@ -28,26 +28,29 @@ fn offer(scene: &Scene<'_>, offers: &mut Offers) {
         let size = 0.5 * scene.compliance[joint - 1];
         let number = move |law| Parameter::new("added", "rad/Nm", Size::Of(size), Term::Law(joint, law));
         let of = move |added, knee| Effect::StiffnessNonlinearity { joint, added, knee };
-        let forms = curves(scene, (&KIND, joint), &KNEES, number, of);
+        let forms = curves(scene, joint, &KNEES, number, of);
         offers.add(Part::Joint(joint), forms);
     }
 }
 
+/// The torque from which on a joint yields otherwise.
+const KNEE: &str = "knee";
+
 /// The forms of a curve of a joint (from 1), by knees over its largest torque.
 pub(super) fn curves(
     scene: &Scene<'_>,
-    (kind, joint): (&'static Kind, usize),
+    joint: usize,
     grid: &[f64],
     number: impl Fn(Law) -> Parameter,
     of: impl Fn(f64, f64) -> Effect + Copy + 'static,
 ) -> Vec<Form> {
     let largest = scene.torque[joint - 1];
-    let own: Vec<f64> = scene.found(kind.name, joint).collect();
-    let form = |share: &f64| {
-        let knee = share * largest;
-        let form = Form::new(format!("knee {share}"), vec![number(unit_law(of(1.0, knee)))]).with("knee", knee, "Nm");
+    let form = |knee: f64| {
+        let label = format!("knee {} of the largest torque", knee / largest);
+        let form = Form::new(label, vec![number(unit_law(of(1.0, knee)))]).with(KNEE, knee, "Nm");
         form.written(move |v| vec![of(v[0], knee)])
     };
-    let between = own.iter().map(|share| Form { between: true, ..form(share) });
-    about_weight(scene, grid.iter().map(form).chain(between).collect())
+    let found = scene.found(KNEE, Part::Joint(joint)).into_iter();
+    let between = found.map(|knee| Form { between: true, ..form(knee) });
+    about_weight(scene, grid.iter().map(|share| form(share * largest)).chain(between).collect())
 }

@@ -20,6 +20,12 @@ const BY_KELVIN: f64 = 2.5e-5;
 const BY_TIME: f64 = 1e-4;
 const FROM: f64 = 5e-5;
 
+/// Time constants of what settles that are tried, over the time of the campaign.
+const SETTLES: [f64; 3] = [0.05, 0.15, 0.5];
+
+/// The time constant over the time of the campaign.
+const CONSTANT: &str = "constant";
+
 /// Less warmth tells nothing (K).
 const COLD: f64 = 0.2;
 
@@ -34,23 +40,29 @@ fn offer(scene: &Scene<'_>, offers: &mut Offers) {
     if scene.visits < FEWEST_VISITS {
         return;
     }
-    let offset = || three_readings(["x0", "y0", "z0"], "m", FROM, |_| 1.0);
-    // Where absolute positions begin is where the robot stands.
-    let from = |of: Vec<Parameter>| -> Vec<Vec<Parameter>> {
-        match scene.what {
-            What::Positions => vec![of],
-            _ => vec![of.clone(), of.into_iter().chain(offset()).collect()],
+    let offset = three_readings(["x0", "y0", "z0"], "m", FROM, |_| 1.0);
+    let with = |label: &str, of: Vec<Parameter>| -> Vec<Form> {
+        let mut forms = vec![Form::new(label, of.clone())];
+        // Where absolute positions begin is where the robot stands.
+        if scene.what != What::Positions {
+            let of = of.into_iter().chain(offset.clone());
+            forms.push(Form::new(format!("{label}, from elsewhere"), of.collect()));
         }
+        forms
     };
     let mut forms = Vec::new();
     if scene.warmth > COLD {
-        for (k, parameters) in from(three_readings(SHIFT, "m/K", BY_KELVIN, |at| at.warmer)).into_iter().enumerate() {
-            forms.push(Form::new(["with the temperature", "with the temperature, from elsewhere"][k], parameters));
-        }
+        forms.extend(with("with the temperature", three_readings(SHIFT, "m/K", BY_KELVIN, |at| at.warmer)));
     }
-    for (k, parameters) in from(three_readings(SHIFT, "m", BY_TIME, |at| at.time)).into_iter().enumerate() {
-        forms.push(Form::new(["with the time", "with the time, from elsewhere"][k], parameters));
-    }
+    forms.extend(with("with the time", three_readings(SHIFT, "m", BY_TIME, |at| at.time)));
+    let settling = |constant: f64| {
+        let settled = move |at: &crate::model::At<'_>| -(-at.time / constant).exp_m1();
+        let forms = with(&format!("settling within {constant}"), three_readings(SHIFT, "m", BY_TIME, settled));
+        forms.into_iter().map(move |form| form.with(CONSTANT, constant, "1"))
+    };
+    forms.extend(SETTLES.into_iter().flat_map(settling));
+    let found = scene.found(CONSTANT, Place::Rig).into_iter();
+    forms.extend(found.flat_map(settling).map(|form| Form { between: true, ..form }));
     if scene.what == What::Positions && scene.warmth > COLD {
         forms.push(growth());
     }

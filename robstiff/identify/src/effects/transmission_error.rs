@@ -18,22 +18,27 @@ pub static KIND: Kind = Kind {
     offer,
 };
 
-/// What a wave is likely to be (rad).
-const LIKELY: f64 = 3e-4;
+/// What a wave is likely to be (rad): displacements show it only where it is large.
+const LIKELY_LOADED: f64 = 0.03;
+const LIKELY_ABSOLUTE: f64 = 3e-4;
 
-/// The orders of the forms: periods in a turn.
+/// The orders of the forms: periods in a turn. Loads do not tell three.
 const ORDERS: [&[u16]; 4] = [&[1], &[2], &[1, 2], &[1, 2, 3]];
+const ORDERS_LOADED: &[&[u16]] = &[&[1], &[2], &[1, 2]];
 
 const SINES: [&str; 3] = ["sin1", "sin2", "sin3"];
 const COSINES: [&str; 3] = ["cos1", "cos2", "cos3"];
 
 fn offer(scene: &Scene<'_>, offers: &mut Offers) {
-    if scene.what != What::Positions {
-        return;
-    }
+    let (size, orders) = match scene.what {
+        What::Displacements => (LIKELY_LOADED, ORDERS_LOADED),
+        What::Positions => (LIKELY_ABSOLUTE, &ORDERS[..]),
+        What::Clamped => return,
+    };
     for joint in scene.turning() {
+        let each = [1, 2, 3].map(|order| waves(joint, order, size));
         let form = |orders: &&'static [u16]| {
-            let wave = |&order: &u16| waves(joint, order);
+            let wave = |order: &u16| each[usize::from(order - 1)].clone();
             let label: Vec<String> = orders.iter().map(ToString::to_string).collect();
             let orders: &'static [u16] = orders;
             let form = Form::new(format!("order {}", label.join(", ")), orders.iter().flat_map(wave).collect());
@@ -47,18 +52,18 @@ fn offer(scene: &Scene<'_>, offers: &mut Offers) {
                 orders.iter().enumerate().map(of).collect()
             })
         };
-        offers.add(Part::Joint(joint), ORDERS.iter().map(form).collect());
+        offers.add(Part::Joint(joint), orders.iter().map(form).collect());
     }
 }
 
-/// A wave of an order: its sine and its cosine.
-pub(super) fn waves(joint: usize, order: u16) -> [Parameter; 2] {
+/// A wave of an order: its sine and its cosine, each likely to be of a size (rad).
+pub(super) fn waves(joint: usize, order: u16, size: f64) -> [Parameter; 2] {
     let number = |name, sine: bool| {
         let of = move |at: &At<'_>| {
             let (s, c) = (f64::from(order) * at.q[joint - 1]).sin_cos();
             if sine { s } else { c }
         };
-        Parameter::new(name, "rad", Size::Of(LIKELY), Term::Aside(joint, 2, Rc::new(of)))
+        Parameter::new(name, "rad", Size::Of(size), Term::Aside(joint, 2, Rc::new(of)))
     };
     let k = usize::from(order - 1).min(2);
     [number(SINES[k], true), number(COSINES[k], false)]

@@ -24,6 +24,8 @@ pub struct At<'a> {
     pub warmer: f64,
     /// The force over the root mean square of all forces; zero where nothing loads the arm.
     pub load: f64,
+    /// Whether the load is larger than that of the row before in its visit (1), or not (-1).
+    pub growing: f64,
     /// The tool centre point as declared, from the middle of all rows, in the base frame (m).
     pub place: Vector3<f64>,
     /// Where the arm stands.
@@ -42,6 +44,8 @@ pub struct Torques<'a> {
     pub weight: &'a [f64],
     /// The joint's coordinate (rad or m).
     pub q: &'a [f64],
+    /// Those of all joints, a list each; none on clamped axes.
+    pub all: &'a [Vec<f64>],
     /// The visit of each row: a sequence of loads that begins on an arm at rest.
     pub visit: &'a [usize],
     /// For how long the visit has lasted (s).
@@ -53,6 +57,9 @@ pub type Law = Rc<dyn Fn(&Torques<'_>) -> Vec<f64>>;
 
 /// The same for each joint (from 1).
 pub type LawOfEach = Rc<dyn Fn(usize, &Torques<'_>) -> Vec<f64>>;
+
+/// A number of the time since something happened (s).
+pub type OfTime = Rc<dyn Fn(f64) -> f64>;
 
 /// A number of each row.
 pub type OfRow = Rc<dyn Fn(&At<'_>) -> f64>;
@@ -92,6 +99,31 @@ pub enum Term {
     Reading(VectorOfRow),
     /// The arm yields more by this share.
     Gain(OfRow),
+    /// Whatever a change of the load makes the arm yield, it yields further by this share of it.
+    Creep(OfTime),
+    /// A spring whose compliance falls as `1 / sqrt(1 + (m / knee)^2)` with the load `m` on it, the knee over the
+    /// largest of all rows.
+    Hardening(Spring, f64),
+}
+
+impl Term {
+    /// Whether it is the same as another: an equal spring or number of the table, or one and the same function.
+    pub fn is(&self, other: &Self) -> bool {
+        match (self, other) {
+            (Self::Spring(a), Self::Spring(b)) => a == b,
+            (Self::Hardening(a, knee), Self::Hardening(b, other)) => a == b && knee == other,
+            (Self::Table(joint, number), Self::Table(other, another)) => joint == other && number == another,
+            (Self::Law(joint, a), Self::Law(other, b)) => joint == other && Rc::ptr_eq(a, b),
+            (Self::Laws(a), Self::Laws(b)) => Rc::ptr_eq(a, b),
+            (Self::Aside(i, x, a), Self::Aside(j, y, b)) => i == j && x == y && Rc::ptr_eq(a, b),
+            (Self::Asides(a), Self::Asides(b)) => Rc::ptr_eq(a, b),
+            (Self::World(a), Self::World(b)) => Rc::ptr_eq(a, b),
+            (Self::Reading(a), Self::Reading(b)) => Rc::ptr_eq(a, b),
+            (Self::Gain(a), Self::Gain(b)) => Rc::ptr_eq(a, b),
+            (Self::Creep(a), Self::Creep(b)) => Rc::ptr_eq(a, b),
+            _ => false,
+        }
+    }
 }
 
 impl fmt::Debug for Term {
@@ -106,6 +138,8 @@ impl fmt::Debug for Term {
             Self::World(_) => f.write_str("world"),
             Self::Reading(_) => f.write_str("reading"),
             Self::Gain(_) => f.write_str("gain"),
+            Self::Creep(_) => f.write_str("creep"),
+            Self::Hardening(spring, _) => write!(f, "hardening {spring:?}"),
         }
     }
 }

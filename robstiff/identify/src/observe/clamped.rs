@@ -63,6 +63,7 @@ impl<'c> Clamped<'c> {
             in_visit: 60.0 * self.of_axis(self.rows[row].axis).iter().position(|r| *r == row).unwrap_or(0) as f64,
             warmer: 0.0,
             load: 0.0,
+            growing: 1.0,
             place: Vector3::zeros(),
             stand: &self.stand,
         }
@@ -75,8 +76,15 @@ impl<'c> Clamped<'c> {
         let none = vec![0.0; rows.len()];
         let in_visit: Vec<f64> = (0..rows.len()).map(|k| 60.0 * k as f64).collect();
         let visit = vec![0; rows.len()];
-        let torques =
-            Torques { load: &load, preload: &none, weight: &none, q: &none, visit: &visit, in_visit: &in_visit };
+        let torques = Torques {
+            load: &load,
+            preload: &none,
+            weight: &none,
+            q: &none,
+            all: &[],
+            visit: &visit,
+            in_visit: &in_visit,
+        };
         rows.iter().zip(law(&torques)).for_each(|(&row, turn)| column[row] = turn);
     }
 

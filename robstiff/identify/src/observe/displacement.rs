@@ -1,10 +1,13 @@
 //! Displacements under measured loads: loaded minus unloaded.
 
+use std::collections::BTreeMap;
+use std::rc::Rc;
+
 use nalgebra::{DMatrix, DVector, Vector3, Vector6};
 use robstiff::JointKind;
 use robstiff_robots::Description;
 
-use super::elastic::{Loaded, Sequence, Yielding, asides, gains, stacked, sum, yielding};
+use super::elastic::{Loaded, Sequence, Yielding, asides, grown, grown_by, stacked, sum, yielding};
 use super::encoders::Encoders;
 use super::equilibrium::{Beyond, beyond_linear, own_springs};
 use super::{Observation, Readings, changed, step_of};
@@ -224,6 +227,12 @@ impl<'c> Displacement<'c> {
         self.data.rows.len()
     }
 
+    /// Whether the load of a row is larger than that of the row before in its visit (1), or not (-1).
+    fn growing(&self, row: usize) -> f64 {
+        let follows = row > 0 && self.sequence.visit[row - 1] == self.sequence.visit[row];
+        if follows && self.clock.load[row] < self.clock.load[row - 1] { -1.0 } else { 1.0 }
+    }
+
     fn at<'a>(&'a self, row: usize) -> At<'a> {
         At {
             row,
@@ -233,6 +242,7 @@ impl<'c> Displacement<'c> {
             in_visit: self.sequence.in_visit[row],
             warmer: self.clock.warmer[row],
             load: self.clock.load[row],
+            growing: self.growing(row),
             place: self.clock.place[row],
             stand: &self.declared[self.station[row]],
         }
@@ -277,8 +287,9 @@ impl<'c> Displacement<'c> {
         })
     }
 
-    fn gains(&self, parameters: &[Parameter], values: &[f64]) -> Vec<f64> {
-        gains(parameters, values, &mut |of| (0..self.rows()).for_each(|row| of(&self.at(row))))
+    /// What the arm yields in all, given what it yields but for what grows of it.
+    fn grown(&self, yielding: Yielding, parameters: &[Parameter], values: &[f64]) -> Yielding {
+        grown(yielding, parameters, values, &self.sequence, &mut |of| self.each(of))
     }
 
     /// What the arm's yielding reads, to first order.
@@ -286,7 +297,7 @@ impl<'c> Displacement<'c> {
         let world = changed(world, parameters, values);
         let loaded = self.loaded(&world, parameters, values);
         let yielding = sum(parameters, values, (&loaded, &self.sequence), &self.encoders);
-        self.read(&world, &loaded, &yielding.gained(&self.gains(parameters, values)))
+        self.read(&world, &loaded, &self.grown(yielding, parameters, values))
     }
 
     /// The prediction but for what large loads make of the arm's shape.
@@ -298,6 +309,17 @@ impl<'c> Displacement<'c> {
             }
         }
         read
+    }
+
+    /// What a unit of a parameter adds to what is read, by a difference of both sides.
+    fn slope(&self, world: &World, (parameters, values): (&[Parameter], &[f64]), which: usize) -> DVector<f64> {
+        let step = step_of(&parameters[which]);
+        let shifted = |by: f64| {
+            let mut values = values.to_vec();
+            values[which] += by;
+            self.yielded(world, parameters, &values)
+        };
+        (shifted(step) - shifted(-step)) / (2.0 * step)
     }
 
     /// What large loads make of the arm's shape; nothing where by these springs it is [too much](MOST) in most rows.
@@ -351,38 +373,39 @@ impl Observation for Displacement<'_> {
     fn columns(&self, world: &World, parameters: &[Parameter], values: &[f64], of: &[usize]) -> DMatrix<f64> {
         let here = changed(world, parameters, values);
         let loaded = self.loaded(&here, parameters, values);
-        let gains = self.gains(parameters, values);
-        let mut whole = None;
+        let (mut whole, mut asides) = (None, BTreeMap::new());
         let mut columns = DMatrix::zeros(self.rows() * self.readings.width, of.len());
         for (k, &which) in of.iter().enumerate() {
             let parameter = &parameters[which];
             let column = match &parameter.term {
-                Term::Spring(_) | Term::Law(..) | Term::Laws(_) => {
+                Term::Spring(_) | Term::Law(..) | Term::Laws(_) | Term::Hardening(..) => {
                     yielding(&parameter.term, &loaded, &self.sequence, &self.encoders)
-                        .map(|part| self.read(&here, &loaded, &part.gained(&gains)))
+                        .map(|part| self.read(&here, &loaded, &self.grown(part, parameters, values)))
                 }
                 Term::Reading(of) => Some(self.read_directly(&**of)),
-                Term::Gain(gain) => {
+                Term::Gain(_) | Term::Creep(_) => {
                     let whole =
                         whole.get_or_insert_with(|| sum(parameters, values, (&loaded, &self.sequence), &self.encoders));
-                    let of_rows: Vec<f64> = (0..self.rows()).map(|row| gain(&self.at(row))).collect();
-                    let twists = whole.twists.iter().zip(&of_rows).map(|(twist, gain)| twist * *gain).collect();
-                    let turns =
-                        whole.turns.iter().map(|turns| turns.iter().zip(&of_rows).map(|(t, g)| t * g).collect());
-                    let gained = Yielding { twists, turns: turns.collect() };
-                    Some(self.read(&here, &loaded, &gained))
+                    grown_by(&parameter.term, &self.sequence, &mut |of| self.each(of))
+                        .map(|shares| self.read(&here, &loaded, &whole.from_rows(&shares)))
                 }
                 Term::Aside(..) | Term::Asides(_) | Term::Table(..) | Term::World(_) => None,
             };
-            let column = column.unwrap_or_else(|| {
-                let step = step_of(parameter);
-                let shifted = |by: f64| {
-                    let mut values = values.to_vec();
-                    values[which] += by;
-                    self.yielded(world, parameters, &values)
-                };
-                (shifted(step) - shifted(-step)) / (2.0 * step)
-            });
+            // All turns about the axis of a joint go with that of its zero.
+            if let Term::Aside(joint, 2, of) = &parameter.term {
+                let unit = asides.entry(*joint).or_insert_with(|| {
+                    let one = Parameter { term: Term::Aside(*joint, 2, Rc::new(|_| 1.0)), ..parameter.clone() };
+                    self.slope(world, (&[parameters, &[one]].concat(), &[values, &[0.0]].concat()), parameters.len())
+                });
+                let mut column = unit.clone();
+                column.as_mut_slice().chunks_mut(self.readings.width).enumerate().for_each(|(row, numbers)| {
+                    let share = of(&self.at(row));
+                    numbers.iter_mut().for_each(|number| *number *= share);
+                });
+                columns.set_column(k, &column);
+                continue;
+            }
+            let column = column.unwrap_or_else(|| self.slope(world, (parameters, values), which));
             columns.set_column(k, &column);
         }
         columns

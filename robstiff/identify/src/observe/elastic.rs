@@ -5,6 +5,7 @@ use std::rc::Rc;
 use nalgebra::{DVector, Vector3, Vector6};
 use robstiff::JointKind;
 
+use crate::model::law::shares_since;
 use crate::model::{EachRow, Parameter, Stand, Term, Torques};
 
 /// An arm that stands somewhere at each row, under a load.
@@ -68,6 +69,7 @@ impl Sequence {
             preload: &self.preload[joint],
             weight: &self.weight[joint],
             q: &self.q[joint],
+            all: &self.q,
             visit: &self.visit,
             in_visit: &self.in_visit,
         }
@@ -94,13 +96,13 @@ impl Yielding {
         }
     }
 
-    /// As much more at each row as it has gained.
-    pub fn gained(mut self, gains: &[f64]) -> Self {
-        self.twists.iter_mut().zip(gains).for_each(|(twist, gain)| *twist *= *gain);
-        for turns in &mut self.turns {
-            turns.iter_mut().zip(gains).for_each(|(turn, gain)| *turn *= *gain);
-        }
-        self
+    /// What is made of it from row to row.
+    pub fn from_rows(&self, shares: &Shares) -> Self {
+        let twist = |of: &Vec<(usize, f64)>| of.iter().map(|(row, share)| self.twists[*row] * *share).sum();
+        let turn = |turns: &Vec<f64>| -> Vec<f64> {
+            shares.iter().map(|of| of.iter().map(|(row, share)| turns[*row] * share).sum()).collect()
+        };
+        Self { twists: shares.iter().map(twist).collect(), turns: self.turns.iter().map(turn).collect() }
     }
 }
 
@@ -119,6 +121,20 @@ pub fn yielding(term: &Term, loaded: &Loaded, sequence: &Sequence, encoders: &[u
             };
             Some(Yielding { twists, turns: encoders.iter().map(turn).collect() })
         }
+        Term::Hardening(spring, knee) => {
+            let parts: Vec<_> = loaded.stands.iter().map(|stand| spring.parts(stand, &loaded.kinds)).collect();
+            let on_it = |(&at, wrench): (&usize, &Vector6<f64>)| {
+                parts[at].iter().map(|part| part.by.dot(wrench).powi(2)).sum::<f64>().sqrt()
+            };
+            let loads: Vec<f64> = loaded.station.iter().zip(&loaded.wrenches).map(on_it).collect();
+            let knee = (knee * loads.iter().copied().fold(0.0, f64::max)).max(f64::MIN_POSITIVE);
+            let twist = |(row, wrench): (usize, &Vector6<f64>)| -> Vector6<f64> {
+                let linear: Vector6<f64> = parts[loaded.station[row]].iter().map(|part| part.twist(wrench)).sum();
+                linear / (loads[row] / knee).hypot(1.0)
+            };
+            let twists = loaded.wrenches.iter().enumerate().map(twist).collect();
+            Some(Yielding { twists, turns: vec![vec![0.0; rows]; encoders.len()] })
+        }
         Term::Law(joint, law) => {
             let turns = law(&sequence.torques(loaded, joint - 1));
             let twists = turns.iter().enumerate().map(|(row, turn)| loaded.twist(row, joint - 1) * *turn);
@@ -135,11 +151,17 @@ pub fn yielding(term: &Term, loaded: &Loaded, sequence: &Sequence, encoders: &[u
             }
             Some(sum)
         }
-        Term::Aside(..) | Term::Asides(_) | Term::Table(..) | Term::World(_) | Term::Reading(_) | Term::Gain(_) => None,
+        Term::Aside(..)
+        | Term::Asides(_)
+        | Term::Table(..)
+        | Term::World(_)
+        | Term::Reading(_)
+        | Term::Gain(_)
+        | Term::Creep(_) => None,
     }
 }
 
-/// How far the arm yields with all parameters at these values, but for gains.
+/// How far the arm yields with all parameters at these values, but for what [grows](grown_by) of it.
 pub fn sum(
     parameters: &[Parameter],
     values: &[f64],
@@ -155,18 +177,40 @@ pub fn sum(
     sum
 }
 
-/// What the gains make of what the arm yields, row by row: 1 where there are none.
-pub fn gains(parameters: &[Parameter], values: &[f64], each: &mut EachRow<'_>) -> Vec<f64> {
+/// The share that rows have in what a row yields, by their numbers.
+pub type Shares = Vec<Vec<(usize, f64)>>;
+
+/// What a unit of a parameter makes of what the arm yields anyway; none of one that makes nothing of it.
+pub fn grown_by(term: &Term, sequence: &Sequence, each: &mut EachRow<'_>) -> Option<Shares> {
+    match term {
+        Term::Gain(gain) => {
+            let mut shares = Vec::new();
+            each(&mut |at| shares.push(vec![(at.row, gain(at))]));
+            Some(shares)
+        }
+        Term::Creep(grows) => Some(shares_since(&sequence.visit, &sequence.in_visit, &**grows)),
+        _ => None,
+    }
+}
+
+/// What the arm yields in all, given what it yields but for what grows of it.
+pub fn grown(
+    mut yielding: Yielding,
+    parameters: &[Parameter],
+    values: &[f64],
+    sequence: &Sequence,
+    each: &mut EachRow<'_>,
+) -> Yielding {
     let own = parameters.iter().zip(values).filter(|(_, value)| **value != 0.0);
-    let own: Vec<_> = own
-        .filter_map(|(parameter, value)| match &parameter.term {
-            Term::Gain(gain) => Some((gain, *value)),
-            _ => None,
+    let more: Vec<Yielding> = own
+        .filter_map(|(parameter, value)| {
+            let mut part = Yielding::none(yielding.twists.len(), yielding.turns.len());
+            part.add(&yielding.from_rows(&grown_by(&parameter.term, sequence, each)?), *value);
+            Some(part)
         })
         .collect();
-    let mut gains = Vec::new();
-    each(&mut |at| gains.push(own.iter().fold(1.0, |sum, (gain, value)| sum + gain(at) * value)));
-    gains
+    more.iter().for_each(|part| yielding.add(part, 1.0));
+    yielding
 }
 
 /// By how much each joint stands aside at each station, as rotation vectors in its own frame; empty

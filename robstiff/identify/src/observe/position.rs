@@ -87,6 +87,7 @@ impl<'c> Position<'c> {
             in_visit: self.sequence.in_visit[row],
             warmer: self.clock.warmer[row],
             load: self.clock.load[row],
+            growing: 1.0,
             place: self.clock.place[row],
             stand: &self.declared[row],
         }
@@ -220,7 +221,7 @@ impl Observation for Position<'_> {
         for (k, &which) in of.iter().enumerate() {
             let parameter = &parameters[which];
             let column = match &parameter.term {
-                Term::Spring(_) | Term::Law(..) | Term::Laws(_) => {
+                Term::Spring(_) | Term::Law(..) | Term::Laws(_) | Term::Hardening(..) => {
                     let part = yielding(&parameter.term, &loaded, &self.sequence, &[]);
                     part.map(|part| {
                         stacked(self.rows(), 3, |row, numbers| {
@@ -242,7 +243,7 @@ impl Observation for Position<'_> {
                 Term::Reading(of) => Some(stacked(self.rows(), 3, |row, numbers| {
                     numbers.copy_from_slice(of(&self.at(row)).as_slice());
                 })),
-                Term::Gain(_) => Some(DVector::zeros(3 * self.rows())),
+                Term::Gain(_) | Term::Creep(_) => Some(DVector::zeros(3 * self.rows())),
                 Term::Table(joint, number) => Some(stacked(self.rows(), 3, |row, numbers| {
                     let moved = loaded.stands[row].screws[joint - 1][*number].at(&levers[row]);
                     numbers.copy_from_slice(here.rig.direction(&moved).as_slice());

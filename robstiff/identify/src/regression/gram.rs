@@ -24,6 +24,14 @@ impl Gram {
         Self { matrix: DMatrix::zeros(columns, columns), log_det: 0.0, count: 0.0 }
     }
 
+    /// The sum of squares of a column that some others leave. None where these do not stand by themselves.
+    pub fn left_of(&self, column: usize, others: &[usize]) -> Option<f64> {
+        let among = self.matrix.select_columns(others).select_rows(others);
+        let with = self.matrix.select_columns(&[column]).select_rows(others);
+        let taken = among.cholesky()?.solve(&with).dot(&with);
+        Some((self.matrix[(column, column)] - taken).max(0.0))
+    }
+
     fn add(&mut self, other: &Self, sign: f64) {
         self.matrix += &other.matrix * sign;
         self.log_det += other.log_det * sign;

@@ -1,6 +1,6 @@
 //! All parameters side by side, with the forms of all candidates.
 
-use std::collections::{BTreeMap, HashMap};
+use std::collections::BTreeMap;
 
 use crate::effects::Candidate;
 use crate::model::Parameter;
@@ -49,26 +49,22 @@ impl Layout {
             layout.keys.push(format!("{k}/{}", parameter.name));
             layout.parameters.push(parameter);
         }
-        let mut known: HashMap<String, usize> = HashMap::new();
         for (number, candidate) in candidates.iter().enumerate() {
+            let first = layout.parameters.len();
             let grid = candidate.forms.iter().filter(|form| !form.between).count().max(1);
             for (which, form) in candidate.forms.iter().enumerate() {
-                let mut columns = Vec::with_capacity(form.parameters.len());
-                for parameter in &form.parameters {
-                    // Forms share what is the same in them.
-                    let label = if form.shape.is_empty() { "" } else { &form.label };
-                    let own = |again: usize| {
-                        format!("{}/{label}/{}/{}/{again}", candidate.name(), parameter.name, parameter.unit)
-                    };
-                    let again = (0..).find(|&again| known.get(&own(again)).is_none_or(|at| !columns.contains(at)));
-                    let key = own(again.unwrap_or_default());
-                    let at = *known.entry(key.clone()).or_insert_with(|| {
+                let columns = form.parameters.iter().enumerate().map(|(k, parameter)| {
+                    let key = format!("{}/{}/{k} {}", candidate.name(), form.label, parameter.name);
+                    // Forms share what is the same in them, and what was refined may be what the grid has.
+                    let is_known =
+                        |at: &usize| layout.keys[*at] == key || layout.parameters[*at].term.is(&parameter.term);
+                    (first..layout.parameters.len()).find(is_known).unwrap_or_else(|| {
                         layout.keys.push(key);
                         layout.parameters.push(parameter.clone());
                         layout.parameters.len() - 1
-                    });
-                    columns.push(at);
-                }
+                    })
+                });
+                let columns = columns.collect();
                 let log_share = -(grid as f64).ln();
                 layout.forms.push(Columns { candidate: number, form: which, columns, log_share });
             }

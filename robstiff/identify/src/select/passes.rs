@@ -7,7 +7,7 @@ use super::layout::Layout;
 use super::problem::{Problem, Set};
 use super::search::{Visited, Width, search};
 use super::solve::{STEPS, Solved};
-use crate::effects::{Place, Shapes, What};
+use crate::effects::{Shapes, What};
 use crate::model::Term;
 use crate::regression::Gram;
 use crate::regression::noise::discrepancies;
@@ -202,25 +202,20 @@ impl Engine<'_> {
             let of = &layout.forms[form];
             let candidate = &layout.candidates[of.candidate];
             let own = &candidate.forms[of.form];
-            let joint = match candidate.place {
-                Place::Part(robstiff_robots::Place::Joint(joint)) => joint,
-                _ => 0,
-            };
             let several = own.shape.iter().any(|number| number.name == "radius2");
             for number in &own.shape {
                 match number.name {
-                    "knee" | "radius1" if !several && joint > 0 => {
-                        let now = number.value / self.scene.torque[joint - 1];
-                        for by in [1.0, step, 1.0 / step, step * step, 1.0 / (step * step)] {
-                            shapes.of_laws.push((candidate.kind.name, joint, now * by));
-                        }
-                    }
                     "from_line" => {
                         let at = self.scene.lines.iter().position(|line| *line as f64 == number.value);
                         let near = at.unwrap_or(0).saturating_sub(NEAR)..=at.unwrap_or(0) + NEAR;
                         shapes.moments.extend(near.filter(|row| (1..self.scene.lines.len()).contains(row)));
                     }
-                    _ => {}
+                    _ if several => {}
+                    name => {
+                        for by in [1.0, step, 1.0 / step, step * step, 1.0 / (step * step)] {
+                            shapes.numbers.push((name, candidate.place, number.value * by));
+                        }
+                    }
                 }
             }
         }

@@ -28,7 +28,7 @@ impl Engine<'_> {
             let mut problem = other.problem(problem.layout, columns, problem.grams.clone());
             problem.priors.iter_mut().zip(&problem.layout.parameters).skip(problem.layout.always().end).for_each(
                 |(prior, parameter)| {
-                    if !matches!(parameter.term, Term::Spring(_) | Term::Law(..)) {
+                    if !matches!(parameter.term, Term::Spring(_) | Term::Hardening(..) | Term::Law(..)) {
                         prior.sd /= by;
                     }
                 },

@@ -5,9 +5,11 @@ use super::found::Found as Effect;
 use crate::effects::{Number, Place, kind_of};
 use crate::fit::case::Case;
 use crate::judge::thresholds::{OUTLYING_ROWS, STANDS_OUT};
+use crate::model::{Size, Term};
 use crate::probability::chi_square_tail;
 use crate::select::always::REFLECTOR;
 use crate::select::engine::Engine;
+use crate::select::layout::Columns;
 use crate::select::passes::Found;
 use crate::select::unseen::Unseen;
 
@@ -29,7 +31,7 @@ pub fn reflector(found: &Found, unseen: &Unseen<'_>) -> Option<NamedEffect> {
     }
     let effect = Effect::new(kind_of("reflector_offset")?, Place::Rig, numbers, Vec::new());
     Some(NamedEffect {
-        class: vec![(effect.to_string(), 1.0)],
+        class: [effect.to_string()].into_iter().chain(twins(found)).map(|name| (name, 1.0)).collect(),
         effect,
         lines: Vec::new(),
         probability: 1.0 - chi_square_tail(most * most, 1.0).unwrap_or(0.0),
@@ -38,6 +40,26 @@ pub fn reflector(found: &Found, unseen: &Unseen<'_>) -> Option<NamedEffect> {
         partial: false,
     })
 }
+
+/// Full names of what moves the readings as the reflector does: numbers of the last row of the table.
+fn twins(found: &Found) -> Vec<String> {
+    let layout = &found.layout;
+    let is_flat = |k: &usize| matches!(layout.parameters[*k].size, Size::Flat(_));
+    let stand: Vec<usize> = layout.always().filter(is_flat).collect();
+    let reflector = layout.always().filter(|k| REFLECTOR.contains(&layout.parameters[*k].name));
+    let both: Vec<usize> = stand.iter().copied().chain(reflector).collect();
+    let left = |column: usize, others: &[usize]| found.grams[0].left_of(column, others).unwrap_or(f64::INFINITY);
+    let is_twin = |form: &&Columns| match form.columns[..] {
+        [column] if matches!(layout.parameters[column].term, Term::Table(..)) => {
+            left(column, &both) < TWIN * left(column, &stand)
+        }
+        _ => false,
+    };
+    layout.forms.iter().filter(is_twin).map(|form| layout.candidates[form.candidate].name()).collect()
+}
+
+/// What leaves less than this part of its squares is no other.
+const TWIN: f64 = 1e-3;
 
 /// Rows that do not belong to the others, where they are few and far off: not the tail of the others.
 pub fn outliers(engine: &Engine<'_>, (found, unseen): (&Found, &Unseen<'_>), case: &Case<'_>) -> Option<NamedEffect> {

@@ -7,12 +7,12 @@ use super::beside;
 use super::corrected::corrected;
 use super::errors::{misfit, poses, rows};
 use super::features::depends_on;
-use super::forms::between_forms;
+use super::forms::{between_forms, between_sets};
 use super::found::Found as Effect;
 use super::written::described;
 use super::{NamedEffect, Nested, Rival, Suspected, Trace, Verdict};
 use crate::campaign::{Campaign, Data};
-use crate::effects::{Number, Offers, Scene, Side, What};
+use crate::effects::{Form, Number, Offers, Scene, Side, What};
 use crate::fit::case::Case;
 use crate::fit::estimate::estimates;
 use crate::fit::noise::{self, NoiseSource};
@@ -23,6 +23,7 @@ use crate::judge::verdict::{Evidence, OverNoise, verdict};
 use crate::model::Term;
 use crate::regression::Fit;
 use crate::regression::noise::OUTLYING;
+use crate::select::always::Own;
 use crate::select::classes::ODDS;
 use crate::select::engine::Engine;
 use crate::select::folds;
@@ -44,7 +45,7 @@ pub fn report(
     let readings = case.observation.readings();
     let own = engine.declared();
     let problem = engine.problem_of(found);
-    let effect = |of: &Weighed| effect(&problem, found, of);
+    let effect = |of: &Weighed| effect(engine, &problem, found, of);
     let (named, rest): (Vec<&Weighed>, Vec<&Weighed>) = judgement.classes.iter().partition(|of| of.why_not.is_none());
     let side = |of: &&Weighed| found.layout.candidates[of.class.members[0].0].kind.side;
     let (unnamed, rest): (Vec<&Weighed>, Vec<&Weighed>) = rest.into_iter().partition(|of| side(of) == Side::Unnamed);
@@ -60,7 +61,13 @@ pub fn report(
         .ok_or_else(|| Error::NotShown("no description fits these data".into()))?;
     let before = engine.alone(&found.layout);
     let estimates_before = estimates(&campaign.robot, &own, before.as_ref().map(|solved| (&found.layout, solved)));
-    let estimates = estimates(&campaign.robot, &own, Some((&found.layout, &model.solved)));
+    let mut estimates = estimates(&campaign.robot, &own, Some((&found.layout, &model.solved)));
+    if !problem.learns() {
+        // Where scales are learned, how sets differ is small against what the priors leave.
+        for (estimate, between) in estimates.iter_mut().zip(between_sets(&problem, found)) {
+            estimate.std = estimate.std.map(|std| (std * std + between).sqrt());
+        }
+    }
     let by_order = order_of(engine, (found, &unseen), &named, nested);
     let mut effects: Vec<NamedEffect> = by_order
         .iter()
@@ -98,9 +105,9 @@ pub fn report(
     effects.iter_mut().for_each(|named| named.partial = verdict == Verdict::Partial);
     let robots = |form: &&usize| found.layout.candidates[found.layout.forms[**form].candidate].kind.side == Side::Robot;
     let written: Vec<Effect> =
-        model.set.iter().filter(robots).map(|&form| of_form(&found.layout, &model.solved.fit, form)).collect();
+        model.set.iter().filter(robots).map(|&form| of_form(engine, &found.layout, &model.solved.fit, form)).collect();
     let table = table(case, &found.layout, &model.solved.point.values);
-    let description = described(campaign, (&own, &estimates), &table, (&written, &engine.scene.compliance))?;
+    let description = described(campaign, (&own, &estimates), &table, &written)?;
     let left_declared = declared(campaign, case);
     let misfits = |left: &DVector<f64>, unseen: &DVector<f64>| misfit(case, left, unseen);
     let (noise, noise_source) = known.map_or((size, NoiseSource::Residuals), |known| (known.size, known.source));
@@ -238,30 +245,42 @@ fn far_off(engine: &Engine<'_>, case: &Case<'_>, (left, noise): (&DVector<f64>, 
 }
 
 /// An effect of the best set with its numbers.
-fn effect(problem: &Problem<'_>, found: &Found, of: &Weighed) -> Effect {
-    let mut effect = of_form(&found.layout, &found.own.fit, of.class.form);
+fn effect(engine: &Engine<'_>, problem: &Problem<'_>, found: &Found, of: &Weighed) -> Effect {
+    let (layout, fit) = (&found.layout, &found.own.fit);
+    let mut effect = of_form(engine, layout, fit, of.class.form);
+    let own = &layout.forms[of.class.form];
+    let by = in_shares(engine, layout, fit, &layout.candidates[own.candidate].forms[own.form]);
     let between = between_forms(problem, found, of.class.form);
     for (number, between) in effect.parameters.iter_mut().zip(between) {
-        number.std = number.std.map(|std| (std * std + between).sqrt());
+        number.std = number.std.map(|std| (std * std + by * by * between).sqrt());
     }
     effect
 }
 
 /// An effect in one of its forms with its numbers in a fit.
-fn of_form(layout: &Layout, fit: &Fit, form: usize) -> Effect {
+fn of_form(engine: &Engine<'_>, layout: &Layout, fit: &Fit, form: usize) -> Effect {
     let columns = &layout.forms[form];
     let candidate = &layout.candidates[columns.candidate];
     let form = &candidate.forms[columns.form];
+    let by = in_shares(engine, layout, fit, form);
     let number = |&k: &usize| {
         let parameter = &layout.parameters[k];
-        let at = fit.place(k);
-        Number { name: parameter.name, value: fit.value(k), std: at.map(|at| fit.std[at]), unit: parameter.unit }
+        let std = fit.place(k).map(|at| by * fit.std[at]);
+        Number { name: parameter.name, value: by * fit.value(k), std, unit: parameter.unit }
     };
-    let values: Vec<f64> = columns.columns.iter().map(|&k| fit.value(k)).collect();
+    let values: Vec<f64> = columns.columns.iter().map(|&k| by * fit.value(k)).collect();
     let is_there = values.iter().any(|value| *value != 0.0);
     let written = form.written.as_ref().filter(|_| is_there).map_or_else(Vec::new, |written| written(&values));
     let numbers = columns.columns.iter().map(number).chain(form.shape.iter().cloned()).collect();
     Effect::new(candidate.kind, candidate.place, numbers, written)
+}
+
+/// What turns shares of what is likely of a joint into shares of what was fitted.
+fn in_shares(engine: &Engine<'_>, layout: &Layout, fit: &Fit, form: &Form) -> f64 {
+    let Some(joint) = form.share_of else { return 1.0 };
+    let own = engine.declared().iter().position(|own| own.what == Own::Joint(joint));
+    let now = own.map_or(0.0, |k| fit.value(layout.fixed + k));
+    if now > 0.0 { engine.scene.compliance[joint - 1] / now } else { 1.0 }
 }
 
 fn class(found: &Found, of: &Weighed) -> Vec<(String, f64)> {

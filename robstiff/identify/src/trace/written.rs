@@ -15,7 +15,7 @@ use crate::select::always::{Declared, Own};
 use robstiff_robots::DhEntry;
 
 /// A description with estimates, corrections of the table, and effects, which says where they are
-/// from. Shares were fitted of `compliance` (rad/Nm or m/N, a joint each).
+/// from.
 ///
 /// # Errors
 /// Numbers that no description takes beside its own effects.
@@ -23,7 +23,7 @@ pub fn described(
     campaign: &Campaign,
     (own, estimates): (&[Declared], &[Estimate]),
     table: &[[f64; 5]],
-    (effects, compliance): (&[Found], &[f64]),
+    effects: &[Found],
 ) -> Result<Description, Error> {
     let mut description = with_values(&campaign.robot, own, estimates);
     if !is_readable(&description) {
@@ -57,8 +57,7 @@ pub fn described(
     for found in effects {
         let mut with = description.clone();
         for effect in &found.written {
-            let effect = in_shares(effect, &with, compliance);
-            add(&mut with, effect);
+            add(&mut with, *effect);
         }
         // What a fit allows may still be beyond what a description takes.
         if !found.written.is_empty() && is_readable(&with) {
@@ -74,24 +73,6 @@ pub fn described(
         source => format!("{source}\n{said}"),
     };
     Ok(description)
-}
-
-/// An effect whose numbers are shares of a joint's compliance, as shares of what that is now.
-fn in_shares(effect: &Effect, description: &Description, compliance: &[f64]) -> Effect {
-    match *effect {
-        Effect::PoseDependentCompliance { joint, cos1, sin1, cos2, sin2 } => {
-            let now = description.joints[joint - 1].compliance();
-            let by = if now > 0.0 { compliance[joint - 1] / now } else { 1.0 };
-            Effect::PoseDependentCompliance {
-                joint,
-                cos1: by * cos1,
-                sin1: by * sin1,
-                cos2: by * cos2,
-                sin2: by * sin2,
-            }
-        }
-        effect => effect,
-    }
 }
 
 /// A description without what the arm's own weight does.
