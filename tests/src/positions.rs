@@ -207,14 +207,13 @@ pub fn run(drawn: &Drawn) -> Came {
     Came { told, right, whole_truth, numbers, claims: claims(&trace, &hidden, |_, _| false) }
 }
 
-/// Of the numbers, but those of slips and drifts, that were named as they are hidden, how many there are, and
+/// Of the numbers, but those of drifts, that were named as they are hidden, how many there are, and
 /// how many have the truth within 1.96 standard deviations.
 fn numbers(trace: &Trace, hidden: &[Hidden]) -> [usize; 2] {
     let mut count = [0; 2];
-    let moves = |hidden: &&Hidden| {
-        matches!(hidden, Hidden::BaseSlip { .. } | Hidden::Expansion { .. } | Hidden::ThermalDrift { .. })
-    };
-    for hidden in hidden.iter().filter(|hidden| !moves(hidden)) {
+    // A trace has other numbers of these.
+    let drifts = |hidden: &&Hidden| matches!(hidden, Hidden::Expansion { .. } | Hidden::ThermalDrift { .. });
+    for hidden in hidden.iter().filter(|hidden| !drifts(hidden)) {
         let Some(named) = trace.effects.iter().find(|named| named.effect.to_string() == hidden.name()) else {
             continue;
         };

@@ -203,16 +203,23 @@ fn faults_of_the_rig_are_named_and_not_written() {
     for (_, trace) in slips.iter().chain(&moved).chain(&grows).chain(&knocked).chain(&wild) {
         assert!(trace.description.effects.is_empty());
     }
+    // In the base frame, wherever the tracker stands.
+    let assert_near = |trace: &Trace, name: &str, truth: f64| {
+        let number = trace.effects[0].effect.parameters.iter().find(|number| number.name == name);
+        let near = |number: &EffectParameter| (number.value - truth).abs() < 4.0 * number.std.expect("a fitted number");
+        assert!(number.is_some_and(near), "{number:?} {truth}");
+    };
+    for (_, trace) in &slips {
+        [("dx", 2e-4), ("dy", -1e-4), ("dz", 0.0), ("ry", 1e-4)].map(|(name, truth)| assert_near(trace, name, truth));
+    }
     for (_, trace) in &grows {
-        // It may as well be named as a drift of the readings.
-        let growth = trace.effects[0].effect.parameters.iter().find(|number| number.name == "growth");
-        let near = |number: &EffectParameter| (number.value - 4e-5).abs() < 4.0 * number.std.expect("a fitted number");
-        assert!(growth.is_none_or(near), "{growth:?}");
+        assert_near(trace, "growth", 4e-5);
     }
     for (_, trace) in &knocked {
         // Of 60 rows behind a header, in the course of a campaign at moments that are some rows apart.
         let line = trace.effects[0].effect.value("from_line");
         assert!((22.0..=30.0).contains(&line), "{line}");
+        [("dx", 2e-4), ("dy", -2e-4), ("dz", 1e-4)].map(|(name, truth)| assert_near(trace, name, truth));
     }
     for (_, trace) in &wild {
         // The header is line 1.

@@ -177,7 +177,7 @@ impl<'c> Position<'c> {
             let twist = yields.as_ref().map_or_else(Vector6::zeros, |yields| yields.twists[row]);
             let mut read = world.rig.position(&self.point(&world, &loaded.stands[row], &twist));
             for (of, value) in &direct {
-                read += of(&self.at(row)) * *value;
+                read += world.rig.direction(&(of(&self.at(row)) * *value));
             }
             numbers.copy_from_slice(read.as_slice());
         })
@@ -241,7 +241,7 @@ impl Observation for Position<'_> {
                     numbers.copy_from_slice(here.rig.direction(&moved).as_slice());
                 })),
                 Term::Reading(of) => Some(stacked(self.rows(), 3, |row, numbers| {
-                    numbers.copy_from_slice(of(&self.at(row)).as_slice());
+                    numbers.copy_from_slice(here.rig.direction(&of(&self.at(row))).as_slice());
                 })),
                 Term::Gain(_) | Term::Creep(_) => Some(DVector::zeros(3 * self.rows())),
                 Term::Table(joint, number) => Some(stacked(self.rows(), 3, |row, numbers| {
