@@ -17,6 +17,7 @@ use crate::model::described::fixed;
 use crate::model::{Sign, Size};
 use crate::probability::{WITHIN, median, student};
 use crate::regression::Fit;
+use crate::regression::noise::Lacking;
 use crate::regression::tails::most_apart;
 use crate::select::Layout;
 use crate::select::always::{Declared, Own};
@@ -70,9 +71,7 @@ impl<'e> Alone<'e> {
     pub fn fitted(case: &'e Case<'_>, robot: &'e Description, least: f64) -> Option<Self> {
         let mut engine = case.engine(robot);
         let own = engine.declared();
-        // An axis has few rows, and those without a load may read exactly zero: by them noise would be all growth.
-        engine.noise.may_grow &= engine.scene.what != What::Clamped;
-        engine.noise.spares_others = true;
+        engine.noise.lacking = Some(Lacking::default());
         engine.noise.weights = evened(&engine);
         engine.fit_alone()?;
         let layout = engine.layout_alone();

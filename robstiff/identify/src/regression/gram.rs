@@ -153,7 +153,7 @@ fn of_group(
     }
     let whole = square(&white);
     let under = |&kappa: &f64| {
-        let kappa = noise.lack * kappa;
+        let kappa = noise.lack() * kappa;
         if kappa == 0.0 {
             return Gram { matrix: whole.clone(), log_det: plain, count: count as f64 };
         }

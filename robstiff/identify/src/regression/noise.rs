@@ -61,6 +61,23 @@ pub enum Level {
     Visit,
 }
 
+/// What the noise takes where the description's own numbers are fitted alone, and what is missing stays. A row that
+/// does not belong to the others weighs by its own residual then. Where candidates are searched it does not: what is
+/// missing looks like such rows.
+#[derive(Clone, Copy, Debug)]
+pub struct Lacking {
+    /// What discrepancies are times [`DISCREPANCIES`]: as much as is missing.
+    pub times: f64,
+    /// How many numbers the residuals are free of.
+    pub fitted: f64,
+}
+
+impl Default for Lacking {
+    fn default() -> Self {
+        Self { times: 1.0, fitted: 0.0 }
+    }
+}
+
 /// The noise of the readings, up to its size.
 #[derive(Clone, Debug)]
 pub struct Noise {
@@ -70,19 +87,8 @@ pub struct Noise {
     pub shared: f64,
     /// The growth `a` with the displacement (1/m).
     pub growth: f64,
-    /// Whether it may grow.
-    pub may_grow: bool,
-    /// Whether a row may be off by anything, and then has no pull on the others. Under loads it may not: what is missing
-    /// looks like such rows, and is no larger than what was read.
-    pub by_anything: bool,
-    /// Whether a row that does not belong to the others weighs by its own residual. Where candidates are searched it
-    /// does not: what is missing looks like such rows.
-    pub spares_others: bool,
-    /// What discrepancies are times [`DISCREPANCIES`]: 1 where candidates are searched, and as much as they ask for
-    /// where what is missing stays.
-    pub lack: f64,
-    /// How many numbers the residuals are free of; zero where candidates are searched.
-    pub fitted: f64,
+    /// Where the description's own numbers are fitted alone, what that takes; none where candidates are searched.
+    pub lacking: Option<Lacking>,
     /// What brings each channel to the noise of the first.
     pub scales: Vec<f64>,
     /// Which rows of an encoder share a level, and its variance `tau` over that of one reading.
@@ -105,16 +111,17 @@ impl Noise {
             weights: vec![1.0; readings.rows()],
             shared: if has_shared(readings) { 1.0 } else { 0.0 },
             growth: 0.0,
-            may_grow: readings.differences,
-            by_anything: !readings.differences,
-            spares_others: false,
-            lack: 1.0,
-            fitted: 0.0,
+            lacking: None,
             scales: (0..channels).map(|channel| if channel == 0 { 1.0 } else { lever }).collect(),
             level: (Level::Block, LEVELS[LEVELS.len() - 1]),
             apart: Apart::default(),
             sizes,
         }
+    }
+
+    /// What discrepancies are times [`DISCREPANCIES`].
+    pub fn lack(&self) -> f64 {
+        self.lacking.map_or(1.0, |of| of.times)
     }
 
     /// The variance of a row's own reading, over that of one reading.
@@ -128,7 +135,7 @@ impl Noise {
         self.learn_scales(readings, left, &rows);
         let shares: &[f64] = if has_shared(readings) { &SHARED } else { &SHARED[..1] };
         for _ in 0..2 {
-            let parts: &[f64] = if self.may_grow { &PROPORTIONAL } else { &PROPORTIONAL[..1] };
+            let parts: &[f64] = if may_grow(readings) { &PROPORTIONAL } else { &PROPORTIONAL[..1] };
             let tried = shares.iter().flat_map(|share| parts.iter().map(move |part| (*share, *part)));
             let judged = tried.map(|(share, part)| {
                 let price = if part > 0.0 { AGAINST_GROWTH } else { 0.0 }
@@ -150,7 +157,8 @@ impl Noise {
     fn hidden(&self, readings: &Readings, share: f64) -> f64 {
         let visits = readings.visit.iter().max().map_or(1, |last| last + 1);
         let of_visit = readings.rows() as f64 / visits as f64;
-        0.5 * self.fitted * ((1.0 + of_visit) / (1.0 + share * of_visit)).ln()
+        let fitted = self.lacking.map_or(0.0, |of| of.fitted);
+        0.5 * fitted * ((1.0 + of_visit) / (1.0 + share * of_visit)).ln()
     }
 
     /// The log-likelihood where noise has a part in proportion to the displacement, and how it grows
@@ -296,7 +304,7 @@ impl Noise {
             let covariance = self.covariance(readings, rows, kappa, (self.shared, self.growth));
             let Some(factor) = covariance.cholesky() else { continue };
             let solved = factor.solve(&self.reported(readings, left, rows));
-            let inverse = self.spares_others.then(|| factor.inverse());
+            let inverse = self.lacking.map(|_| factor.inverse());
             for (k, &row) in rows.iter().enumerate() {
                 let own = self.own(row, self.growth);
                 let weighed = own / self.weights[row];
@@ -312,10 +320,10 @@ impl Noise {
         let rows: Vec<usize> = rows.iter().flatten().copied().collect();
         let of_rows: Vec<f64> = rows.iter().map(|&row| squares[row]).collect();
         let axes = readings.reported as f64;
-        let (weights, apart) = weigh(&of_rows, axes, self.by_anything);
+        let (weights, apart) = weigh(&of_rows, axes, may_be_anything(readings));
         rows.iter().zip(weights).for_each(|(&row, weight)| self.weights[row] = weight);
         let mut beyond: Vec<usize> = apart.beyond.iter().map(|&k| rows[k]).collect();
-        if self.spares_others && is_loaded(readings) {
+        if self.lacking.is_some() && is_loaded(readings) {
             // What is missing grows with the load, too.
             let most = |row: usize| (PROPORTIONAL[PROPORTIONAL.len() - 1] * self.sizes[row] / size).powi(2);
             beyond.retain(|&row| beside[row].0 > most(row));
@@ -324,7 +332,7 @@ impl Noise {
         self.apart = Apart { beyond, ..apart };
         // A row that does not belong to the others may be off by anything: by its own residual it is likeliest.
         // Many of them are what the noise is like.
-        if self.spares_others && self.apart.rows().len() <= most_apart(rows.len()) {
+        if self.lacking.is_some() && self.apart.rows().len() <= most_apart(rows.len()) {
             for &row in self.apart.rows() {
                 let (own, (off, said)) = (self.own(row, self.growth), beside[row]);
                 self.weights[row] = self.weights[row].min(own / (off / axes - said).max(own));
@@ -343,7 +351,7 @@ impl Noise {
             let (a, b) = (rows[i], rows[j]);
             let own = if i == j { self.own(a, growth) / self.weights[a] } else { 0.0 };
             let visit = if readings.visit[a] == readings.visit[b] { share } else { 0.0 };
-            own + visit + self.lack * kappa * readings.force[a].dot(&readings.force[b])
+            own + visit + self.lack() * kappa * readings.force[a].dot(&readings.force[b])
         })
     }
 
@@ -379,6 +387,18 @@ fn has_shared(readings: &Readings) -> bool {
     let visits = readings.visit.iter().max().map_or(0, |last| last + 1);
     // Of a clamped axis every row has its own; what turns it is no force on the tool.
     readings.differences && is_loaded(readings) && visits < readings.rows()
+}
+
+/// Whether noise may grow with the displacement. An axis has few rows, and those without a load may read exactly zero: by
+/// them noise would be all growth.
+fn may_grow(readings: &Readings) -> bool {
+    readings.differences && is_loaded(readings)
+}
+
+/// Whether a row may be off by anything, and then has no pull on the others. Under loads it may not: what is missing
+/// looks like such rows, and is no larger than what was read.
+fn may_be_anything(readings: &Readings) -> bool {
+    !readings.differences
 }
 
 fn is_loaded(readings: &Readings) -> bool {

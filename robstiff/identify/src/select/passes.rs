@@ -135,8 +135,8 @@ impl Engine<'_> {
     fn learn_noise(&mut self, solved: &Solved, kappa: usize) {
         let readings = self.observation.readings();
         let kappa = discrepancies(readings)[kappa];
-        if self.noise.spares_others {
-            self.noise.fitted = solved.fit.shares().iter().sum();
+        if let Some(lacking) = &mut self.noise.lacking {
+            lacking.fitted = solved.fit.shares().iter().sum();
         }
         self.noise.learn(readings, &solved.left, kappa, &self.training);
     }
@@ -144,9 +144,6 @@ impl Engine<'_> {
     /// What is always in by itself at its optimum under the noise that it leaves; none of the compliances negative.
     /// A row that is far off its pose may be its own matter, or what is missing at the pose: the likelier of both.
     pub fn settle(&mut self, layout: &Layout) -> Option<Solved> {
-        if !self.noise.spares_others {
-            return self.settled(layout, false);
-        }
         let mut apart = self.clone();
         let solved = self.settled(layout, false)?;
         if solved.kappa == 0 {
@@ -182,10 +179,9 @@ impl Engine<'_> {
             pass += 1;
             let moved = before.iter().zip(&self.noise.weights).map(|(a, b)| (a / b).ln().abs()).fold(0.0, f64::max);
             // What is missing may be more than any search would leave; a row a pose does not tell it from noise.
-            let is_most =
-                self.noise.spares_others && kappa > 0 && kappa == last_kappa && readings.blocks < readings.rows();
-            if is_most && pass < SETTLING {
-                self.noise.lack *= LACKS_MORE;
+            let is_most = kappa > 0 && kappa == last_kappa && readings.blocks < readings.rows();
+            if let Some(lacking) = self.noise.lacking.as_mut().filter(|_| is_most && pass < SETTLING) {
+                lacking.times *= LACKS_MORE;
                 continue;
             }
             if pass == SETTLING || (moved < SETTLED && kappa == last) {
