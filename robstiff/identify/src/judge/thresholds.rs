@@ -12,9 +12,8 @@ pub const SIZES: [f64; 2] = [1.0 / 3.0, 3.0];
 /// 72, 2010, take 0.6 to 0.9).
 pub const RECURS: f64 = 0.8;
 
-/// Of loaded arms, the whole search must predict unseen poses better than the description's own numbers
-/// alone, by this part. A fault of the rig may do so little by itself, and much with another: what is
-/// asked is whether all together predict.
+/// The whole search must predict unseen poses better than the description's own numbers alone, by this part. A fault of
+/// the rig may do so little by itself, and much with another: what is asked is whether all together predict.
 pub const FALLS: f64 = 0.01;
 
 /// Of absolute positions an arm deviates in many small ways, of which most may replace each other.

@@ -387,7 +387,7 @@ impl Observation for Displacement<'_> {
                     let whole =
                         whole.get_or_insert_with(|| sum(parameters, values, (&loaded, &self.sequence), &self.encoders));
                     grown_by(&parameter.term, &self.sequence, &mut |of| self.each(of))
-                        .map(|shares| self.read(&here, &loaded, &whole.from_rows(&shares)))
+                        .map(|shares| self.read(&here, &loaded, &whole.shared_by(&shares)))
                 }
                 Term::Aside(..) | Term::Asides(_) | Term::Table(..) | Term::World(_) => None,
             };

@@ -96,8 +96,8 @@ impl Yielding {
         }
     }
 
-    /// What is made of it from row to row.
-    pub fn from_rows(&self, shares: &Shares) -> Self {
+    /// The sum of what rows have, each by its share.
+    pub fn shared_by(&self, shares: &Shares) -> Self {
         let twist = |of: &Vec<(usize, f64)>| of.iter().map(|(row, share)| self.twists[*row] * *share).sum();
         let turn = |turns: &Vec<f64>| -> Vec<f64> {
             shares.iter().map(|of| of.iter().map(|(row, share)| turns[*row] * share).sum()).collect()
@@ -205,7 +205,7 @@ pub fn grown(
     let more: Vec<Yielding> = own
         .filter_map(|(parameter, value)| {
             let mut part = Yielding::none(yielding.twists.len(), yielding.turns.len());
-            part.add(&yielding.from_rows(&grown_by(&parameter.term, sequence, each)?), *value);
+            part.add(&yielding.shared_by(&grown_by(&parameter.term, sequence, each)?), *value);
             Some(part)
         })
         .collect();
