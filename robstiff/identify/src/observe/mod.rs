@@ -6,6 +6,7 @@
 //! a reading, by central differences for numbers of the arm and the rig.
 
 pub mod clamped;
+mod clock;
 pub mod displacement;
 pub mod elastic;
 pub mod encoders;

@@ -5,7 +5,7 @@ use robstiff::JointKind;
 use robstiff_robots::Description;
 use robstiff_robots::effect::gravity_sag::GRAVITY;
 
-use super::displacement::{Clock, in_visit};
+use super::clock::{Clock, in_visit};
 use super::elastic::{Loaded, Sequence, asides, stacked, sum, yielding};
 use super::equilibrium::{beyond_linear, own_springs};
 use super::registration::registration;
