@@ -64,7 +64,12 @@ fn main() {
     // What is outside the catalogue has no probability: that of a name is of the candidates that there are.
     let inside = records.iter().filter(|record| !record.ready.case.group.hides_what_is_outside());
     let claims: Vec<Claim> = inside.flat_map(|record| record.claims.iter().cloned()).collect();
-    print!("\n{}", reliability::table(&claims));
+    let named: Vec<Claim> = claims.iter().filter(|claim| claim.why_not.is_none()).cloned().collect();
+    print!(
+        "\nAll classes:\n\n{}\nThose that are named:\n\n{}",
+        reliability::table(&claims),
+        reliability::table(&named)
+    );
     if let Some(folder) = arguments.csv.parent() {
         fs::create_dir_all(folder).unwrap_or_else(|problem| fail(&arguments.csv, &problem));
     }
