@@ -210,7 +210,9 @@ fn faults_of_the_rig_are_named_and_not_written() {
         assert!(number.is_some_and(near), "{number:?} {truth}");
     };
     for (_, trace) in &slips {
-        [("dx", 2e-4), ("dy", -1e-4), ("dz", 0.0), ("ry", 1e-4)].map(|(name, truth)| assert_near(trace, name, truth));
+        for (name, truth) in [("dx", 2e-4), ("dy", -1e-4), ("dz", 0.0), ("ry", 1e-4)] {
+            assert_near(trace, name, truth);
+        }
     }
     for (_, trace) in &grows {
         assert_near(trace, "growth", 4e-5);
@@ -219,7 +221,9 @@ fn faults_of_the_rig_are_named_and_not_written() {
         // Of 60 rows behind a header, in the course of a campaign at moments that are some rows apart.
         let line = trace.effects[0].effect.value("from_line");
         assert!((22.0..=30.0).contains(&line), "{line}");
-        [("dx", 2e-4), ("dy", -2e-4), ("dz", 1e-4)].map(|(name, truth)| assert_near(trace, name, truth));
+        for (name, truth) in [("dx", 2e-4), ("dy", -2e-4), ("dz", 1e-4)] {
+            assert_near(trace, name, truth);
+        }
     }
     for (_, trace) in &wild {
         // The header is line 1.

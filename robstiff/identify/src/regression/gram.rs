@@ -205,7 +205,8 @@ mod tests {
     use nalgebra::Vector3;
 
     use super::*;
-    use crate::regression::noise::{DISCREPANCIES, Level};
+    use crate::regression::encoders::Level;
+    use crate::regression::noise::DISCREPANCIES;
 
     fn readings() -> Readings {
         let rows = 7;

@@ -8,15 +8,11 @@
 //! `v_r = 1 + (a |d_r|)^2` grows with the displacement. `w_r` is small where a row is outlying: see
 //! [`tails`](super::tails). The last part is what the model does not account for at a pose, its *discrepancy* (Kennedy and
 //! O'Hagan, J. R. Statist. Soc. B 63, 2001): a random compliance of each pose, which adds the more,
-//! the larger the load.
-//!
-//! The readings of an encoder at a pose have the covariance `s_e^2 [diag(v_r / w_r) + tau 1_level]`.
-//! A gear has errors: the angle of the unloaded arm behind it is not the coordinate. What the rows of a
-//! pose, or of a visit, share is a level whose variance `tau` is learned. An encoder has no
-//! discrepancy: it sees the gear alone, where a model lacks little.
+//! the larger the load. Encoders have another covariance: see [`encoders`].
 
 use nalgebra::{DMatrix, DVector, Vector3};
 
+use super::encoders;
 use super::tails::{Apart, most_apart, weigh};
 use crate::observe::Readings;
 use crate::probability::median;
@@ -27,16 +23,6 @@ pub const DISCREPANCIES: [f64; 5] = [0.0, 0.03, 0.3, 3.0, 30.0];
 /// The shares `rho` of the unloaded reading that are tried: none, some, and as noisy as the loaded
 /// one.
 const SHARED: [f64; 3] = [0.0, 0.3, 1.0];
-
-/// The variances `tau` of the levels of encoders that are tried, over that of one reading. Under the last
-/// a level says nothing.
-const LEVELS: [f64; 10] = [0.0, 0.3, 1.0, 3.0, 10.0, 30.0, 100.0, 300.0, 1e3, 1e4];
-
-/// A reading of an encoder that is further from its level than this, over the noise, does not count.
-const FAR: f64 = 4.0;
-
-/// The median of `|x|` of a standard normal `x`.
-const MEDIAN_OF_NORMAL: f64 = 0.674_489_75;
 
 /// The parts of a displacement by which noise may grow that are tried.
 const PROPORTIONAL: [f64; 5] = [0.0, 0.005, 0.01, 0.02, 0.04];
@@ -51,15 +37,6 @@ const GROWING: usize = 4;
 
 /// A row with less weight than this is outlying.
 pub const OUTLYING: f64 = 0.3;
-
-/// What the rows share that have an encoder's level in common.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Level {
-    /// The pose.
-    Block,
-    /// The visit.
-    Visit,
-}
 
 /// What the noise takes where the description's own numbers are fitted alone, and what is missing stays. A row that
 /// does not belong to the others weighs by its own residual then. Where candidates are searched it does not: what is
@@ -92,7 +69,7 @@ pub struct Noise {
     /// What brings each channel to the noise of the first.
     pub scales: Vec<f64>,
     /// Which rows of an encoder share a level, and its variance `tau` over that of one reading.
-    pub level: (Level, f64),
+    pub level: (encoders::Level, f64),
     /// The rows that do not belong to the others.
     pub apart: Apart,
     /// The size of the displacement of each row (m).
@@ -113,7 +90,7 @@ impl Noise {
             growth: 0.0,
             lacking: None,
             scales: (0..channels).map(|channel| if channel == 0 { 1.0 } else { lever }).collect(),
-            level: (Level::Block, LEVELS[LEVELS.len() - 1]),
+            level: encoders::UNKNOWN,
             apart: Apart::default(),
             sizes,
         }
@@ -206,69 +183,19 @@ impl Noise {
 
     /// The levels of encoders, and the noise of each over that of displacements.
     fn learn_encoders(&mut self, readings: &Readings, left: &DVector<f64>, kappa: f64, rows: &[Vec<usize>]) {
-        let axes: Vec<usize> = (0..readings.width).filter(|axis| readings.channels[*axis] >= 2).collect();
-        if axes.is_empty() {
-            return;
-        }
-        let tried = [Level::Block, Level::Visit].into_iter().flat_map(|by| LEVELS.map(|tau| (by, tau)));
-        let mut best: Option<(f64, (Level, f64), Vec<f64>)> = None;
-        for level in tried {
-            let (mut likelihood, mut sizes) = (0.0, Vec::new());
-            for white in self.white_encoders(readings, left, rows, &axes, level) {
-                let (one, size) = size_of(&white);
-                likelihood += one;
-                sizes.push(size);
-            }
-            if best.as_ref().is_none_or(|(most, ..)| likelihood > *most + 1e-6) {
-                best = Some((likelihood, level, sizes));
-            }
-        }
+        let Some(learned) = encoders::learned(readings, left, rows, &|row| self.of_row(row)) else { return };
         let size = self.likelihood(readings, left, kappa, rows, (self.shared, self.growth)).1;
-        let Some((_, level, sizes)) = best else { return };
-        self.level = level;
-        for (&axis, of_axis) in axes.iter().zip(sizes) {
+        self.level = learned.level;
+        for (axis, of_axis) in learned.sizes {
             if of_axis > 0.0 && size > 0.0 {
                 self.scales[readings.channels[axis]] = size / of_axis;
             }
         }
     }
 
-    /// The whitened residuals of each encoder, and the logarithm of the determinant of their covariance.
-    fn white_encoders(
-        &self,
-        readings: &Readings,
-        left: &DVector<f64>,
-        rows: &[Vec<usize>],
-        axes: &[usize],
-        level: (Level, f64),
-    ) -> Vec<(Vec<f64>, f64)> {
-        let mut white = vec![(Vec::new(), 0.0); axes.len()];
-        for rows in rows.iter().filter(|rows| !rows.is_empty()) {
-            let Some(factor) = self.level_covariance(readings, rows, level).cholesky() else { continue };
-            let lower = factor.l();
-            let log_det = 2.0 * lower.diagonal().iter().map(|d| d.ln()).sum::<f64>();
-            let of = DMatrix::from_fn(rows.len(), axes.len(), |i, k| left[rows[i] * readings.width + axes[k]]);
-            let Some(of) = lower.solve_lower_triangular(&of) else { continue };
-            for (k, (numbers, sum)) in white.iter_mut().enumerate() {
-                numbers.extend(of.column(k).iter());
-                *sum += log_det;
-            }
-        }
-        white
-    }
-
-    /// The covariance of an encoder over some rows of a block, over its variance.
-    fn level_covariance(&self, readings: &Readings, rows: &[usize], (by, tau): (Level, f64)) -> DMatrix<f64> {
-        DMatrix::from_fn(rows.len(), rows.len(), |i, j| {
-            let own = if i == j { self.of_row(rows[i]) } else { 0.0 };
-            let is_shared = by == Level::Block || readings.visit[rows[i]] == readings.visit[rows[j]];
-            own + if is_shared { tau } else { 0.0 }
-        })
-    }
-
     /// The covariance of an encoder over some rows of a block, over its variance.
     pub fn of_encoder(&self, readings: &Readings, rows: &[usize]) -> DMatrix<f64> {
-        self.level_covariance(readings, rows, self.level)
+        encoders::covariance(readings, rows, self.level, &|row| self.of_row(row))
     }
 
     /// The log-likelihood of the residuals, at their most likely size, and that size (m).
@@ -408,14 +335,4 @@ fn is_loaded(readings: &Readings) -> bool {
 /// Whether anything loads the arm, so that there can be a discrepancy.
 pub fn discrepancies(readings: &Readings) -> &'static [f64] {
     if is_loaded(readings) { &DISCREPANCIES } else { &DISCREPANCIES[..1] }
-}
-
-/// The log-likelihood of whitened residuals at their most likely size, and that size. Those that are far
-/// from the others are brought near.
-fn size_of((white, log_det): &(Vec<f64>, f64)) -> (f64, f64) {
-    let most = FAR * median(white.iter().map(|one| one.abs()).collect()) / MEDIAN_OF_NORMAL;
-    let count = white.len().max(1) as f64;
-    let sum: f64 = white.iter().map(|one| one.abs().min(most).powi(2)).sum();
-    let variance = (sum / count).max(f64::MIN_POSITIVE);
-    (-0.5 * count * variance.ln() - 0.5 * log_det, variance.sqrt())
 }
