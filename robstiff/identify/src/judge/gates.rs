@@ -128,7 +128,7 @@ fn why_not(
     if of.stands_out.is_none() && of.replaced.is_some_and(|of| of.loss < LOSS || of.worse < WORSE) {
         return Some("unseen poses are predicted about as well with something else in its place".into());
     }
-    if what != What::Clamped && falls < FALLS {
+    if what != What::Clamped && of.stands_out.is_none() && falls < FALLS {
         return Some("all effects together predict unseen poses no better than the description's own numbers".into());
     }
     if discrepancy > 0.5 && accounts < ACCOUNTS {
