@@ -96,7 +96,7 @@ fn the_search_without_poses_of_the_fanuc_errs_by_more() {
     let (found, again) = (&*FOUND, &FOUND.nested);
     assert_eq!(again.folds, 5);
     // The figure that the page on tracing shows.
-    assert_near("searched", again.rms, 113.7e-6, 0.02);
+    assert_near("searched", again.rms, 120.4e-6, 0.02);
     assert_near("what is told", found.after.holdout_rms, again.rms, 1e-9);
     assert!(again.rms > 1.1 * found.after.rms, "{again:?}, {:?}", found.after);
     assert!(again.rms < again.identified_rms && again.identified_rms > found.identified.rms, "{again:?}");
