@@ -203,7 +203,9 @@ noise: {displacement: 8 um, stated: no}
             }
         }
         let (trace, campaign) = traced(robot, Data::Clamped(rows));
-        assert_eq!(trace.effects[0].effect.to_string(), "stiffness_nonlinearity@joint 2", "{}", trace.why);
+        // A curve has two names: lost motion and hardening are one law.
+        let names = [vec![trace.effects[0].effect.to_string()], trace.effects[0].same_as()].concat();
+        assert!(names.iter().any(|name| name == "stiffness_nonlinearity@joint 2"), "{names:?} {}", trace.why);
         let errors = errors(&trace, &campaign).expect("it was traced");
         let whole = (torques.iter().map(|&torque| curve(torque).powi(2)).sum::<f64>() / torques.len() as f64).sqrt();
         let added = errors.iter().find(|axis| axis.id == "axis 2").expect("it was loaded").contribution;
