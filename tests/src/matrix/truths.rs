@@ -7,7 +7,7 @@
 //!   that effect nor, where it is the operators that are fewer, anything of that
 //!   joint. A soft base and a soft tool share one translation.
 //! - A drift moves a reading by how much warmer it was than at the unloaded one, hours before: a file says when the
-//!   former was taken, and the numbers of a trace are of that. Creep is told by another law of time.
+//!   former was taken, and the numbers of a trace are of that. A trace has another law of time for creep.
 //! - A load cell of which all axes read too much by the same factor is the same as
 //!   softer joints, so a trace tells the scale of two axes against the third, and
 //!   all loads and compliances as that one has them.

@@ -5,7 +5,7 @@ use std::rc::Rc;
 use robstiff_robots::Place as Part;
 
 use super::scene::What;
-use super::{Form, Kind, Offers, Place, Scene, Side};
+use super::{Form, Kind, Offers, Place, Scene, Side, near_found};
 use crate::model::law::turns_on;
 use crate::model::{Parameter, Size, Term};
 
@@ -41,8 +41,7 @@ fn offer(scene: &Scene<'_>, offers: &mut Offers) {
                 let share = Parameter::new("share", "1", Size::Of(LIKELY), term).nonnegative();
                 Form::new(format!("onset {onset} s"), vec![share]).with("onset", onset, "s")
             };
-            let found = scene.found("onset", Place::Rig).into_iter();
-            let between = found.map(|onset| Form { between: true, ..form(onset) });
+            let between = near_found(scene, "onset", Place::Rig, form);
             offers.add(Place::Rig, ONSETS.into_iter().map(form).chain(between).collect());
         }
         What::Clamped => {

@@ -2,7 +2,7 @@
 
 use robstiff_robots::Place as Part;
 
-use super::{Form, Kind, Offers, Scene, Side};
+use super::{Form, Kind, Offers, Scene, Side, near_found};
 use crate::model::spring::{ACROSS, EACH, Site, Spring};
 use crate::model::{Parameter, Size, Term};
 
@@ -40,7 +40,7 @@ fn offer(scene: &Scene<'_>, offers: &mut Offers) {
             let axes = if springs.len() == 1 { format!(" {:?}", springs[0]) } else { String::new() };
             Form::new(format!("{label}{axes}, knee {knee}"), each.collect()).with(KNEE, knee, "1")
         };
-        let between = scene.found(KNEE, place).into_iter().map(|knee| Form { between: true, ..of(knee) });
+        let between = near_found(scene, KNEE, place, of);
         KNEES.into_iter().map(of).chain(between).collect()
     };
     let turns = ("turns", "rad/Nm");

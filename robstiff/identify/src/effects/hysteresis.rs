@@ -3,7 +3,7 @@
 use robstiff::Effect;
 use robstiff_robots::Place as Part;
 
-use super::{Form, Kind, Offers, Scene, Side, about_weight};
+use super::{Form, Kind, Offers, Scene, Side, about_weight, near_found};
 use crate::model::law::play;
 use crate::model::{Parameter, Size, Term};
 
@@ -44,8 +44,7 @@ fn offer(scene: &Scene<'_>, offers: &mut Offers) {
             form.written(move |weights| written(joint, &radii, weights))
         };
         let grid = RADII.iter().map(|radius| form(&[*radius])).chain([form(&THREE)]);
-        let found = scene.found(NAMES[0], Part::Joint(joint)).into_iter();
-        let between = found.map(|radius| Form { between: true, ..form(&[radius / largest]) });
+        let between = near_found(scene, NAMES[0], Part::Joint(joint), |radius| form(&[radius / largest]));
         offers.add(Part::Joint(joint), about_weight(scene, grid.chain(between).collect()));
     }
 }

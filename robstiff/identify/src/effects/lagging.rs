@@ -2,7 +2,7 @@
 
 use robstiff_robots::Place as Part;
 
-use super::{Form, Kind, Offers, Scene, Side};
+use super::{Form, Kind, Offers, Scene, Side, near_found};
 use crate::model::law::turns_on;
 use crate::model::{Parameter, Size, Term};
 
@@ -37,8 +37,7 @@ fn offer(scene: &Scene<'_>, offers: &mut Offers) {
             Form::new(format!("within {constant} s"), share).with("constant", constant, "s")
         };
         let goes_on = Form::new("by the logarithm of time", share(Box::new(f64::ln_1p)));
-        let found = scene.found("constant", Part::Joint(joint)).into_iter();
-        let between = found.map(|constant| Form { between: true, ..ends(constant) });
+        let between = near_found(scene, "constant", Part::Joint(joint), ends);
         let forms = CONSTANTS.into_iter().map(ends).chain([goes_on]).chain(between);
         offers.add(Part::Joint(joint), forms.map(|form| form.share_of(joint)).collect());
     }

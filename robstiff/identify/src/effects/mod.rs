@@ -208,6 +208,16 @@ pub struct Form {
     pub share_of: Option<usize>,
 }
 
+/// Forms near what was found of a number that is chosen: they count as one with those of a grid.
+fn near_found(
+    scene: &Scene<'_>,
+    number: &'static str,
+    place: impl Into<Place>,
+    form: impl Fn(f64) -> Form,
+) -> Vec<Form> {
+    scene.found(number, place).into_iter().map(|found| Form { between: true, ..form(found) }).collect()
+}
+
 /// Forms of laws of a gear, each about the load alone and, where gears may carry a weight, about all of that.
 fn about_weight(scene: &Scene<'_>, mut forms: Vec<Form>) -> Vec<Form> {
     if scene.may_preload() {

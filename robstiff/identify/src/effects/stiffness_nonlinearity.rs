@@ -3,7 +3,7 @@
 use robstiff::Effect;
 use robstiff_robots::Place as Part;
 
-use super::{Form, Kind, Offers, Scene, Side, about_weight};
+use super::{Form, Kind, Offers, Scene, Side, about_weight, near_found};
 use crate::model::law::unit_law;
 use crate::model::term::Law;
 use crate::model::{Parameter, Size, Term};
@@ -50,7 +50,6 @@ pub(super) fn curves(
         let form = Form::new(label, vec![number(unit_law(of(1.0, knee)))]).with(KNEE, knee, "Nm");
         form.written(move |v| vec![of(v[0], knee)])
     };
-    let found = scene.found(KNEE, Part::Joint(joint)).into_iter();
-    let between = found.map(|knee| Form { between: true, ..form(knee) });
+    let between = near_found(scene, KNEE, Part::Joint(joint), form);
     about_weight(scene, grid.iter().map(|share| form(share * largest)).chain(between).collect())
 }

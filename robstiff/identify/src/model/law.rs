@@ -40,7 +40,7 @@ pub fn shares_since(visit: &[usize], in_visit: &[f64], grows: &dyn Fn(f64) -> f6
         let put_on = |k: usize| if k == 0 { read[0] - first } else { read[k - 1] };
         for (k, &row) in rows.iter().enumerate() {
             let grown = |of: usize| if of > k { 0.0 } else { grows(read[k] - put_on(of)) };
-            // A row has its own change in it, and takes back that of the next.
+            // A load's change is in from its row on, and out from the next load's on.
             shares[row] = (0..=k).map(|of| (rows[of], grown(of) - grown(of + 1))).collect();
         }
     }
@@ -79,7 +79,7 @@ pub fn unit_law(effect: Effect) -> Law {
 mod tests {
     use super::*;
 
-    /// Two loads of one visit: the first step lasts on while the second is new; a visit begins anew.
+    /// Two loads of one visit: the first step lasts on while the second is new. Each visit starts unloaded.
     #[test]
     fn every_step_of_a_load_has_its_own_time() {
         let (visit, in_visit) = ([0, 0, 0, 1], [0.0, 10.0, 20.0, 0.0]);

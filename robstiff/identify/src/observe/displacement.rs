@@ -8,7 +8,7 @@ use robstiff::JointKind;
 use robstiff_robots::Description;
 
 use super::clock::{Clock, in_visit};
-use super::elastic::{Loaded, Sequence, Yielding, asides, grown, grown_by, stacked, sum, yielding};
+use super::elastic::{Loaded, Sequence, Shares, Yielding, asides, grown_by, growths, stacked, sum, yielding};
 use super::encoders::Encoders;
 use super::equilibrium::{Beyond, beyond_linear, own_springs};
 use super::{Observation, Readings, changed, step_of};
@@ -244,9 +244,8 @@ impl<'c> Displacement<'c> {
         })
     }
 
-    /// What the arm yields in all, given what it yields but for what grows of it.
-    fn grown(&self, yielding: Yielding, parameters: &[Parameter], values: &[f64]) -> Yielding {
-        grown(yielding, parameters, values, &self.sequence, &mut |of| self.each(of))
+    fn growths(&self, parameters: &[Parameter], values: &[f64]) -> Vec<(Shares, f64)> {
+        growths(parameters, values, &self.sequence, &mut |of| self.each(of))
     }
 
     /// What the arm's yielding reads, to first order.
@@ -254,7 +253,7 @@ impl<'c> Displacement<'c> {
         let world = changed(world, parameters, values);
         let loaded = self.loaded(&world, parameters, values);
         let yielding = sum(parameters, values, (&loaded, &self.sequence), &self.encoders);
-        self.read(&world, &loaded, &self.grown(yielding, parameters, values))
+        self.read(&world, &loaded, &yielding.grown(&self.growths(parameters, values)))
     }
 
     /// The prediction but for what large loads make of the arm's shape.
@@ -330,6 +329,7 @@ impl Observation for Displacement<'_> {
     fn columns(&self, world: &World, parameters: &[Parameter], values: &[f64], of: &[usize]) -> DMatrix<f64> {
         let here = changed(world, parameters, values);
         let loaded = self.loaded(&here, parameters, values);
+        let growths = self.growths(parameters, values);
         let (mut whole, mut asides) = (None, BTreeMap::new());
         let mut columns = DMatrix::zeros(self.rows() * self.readings.width, of.len());
         for (k, &which) in of.iter().enumerate() {
@@ -337,7 +337,7 @@ impl Observation for Displacement<'_> {
             let column = match &parameter.term {
                 Term::Spring(_) | Term::Law(..) | Term::Laws(_) | Term::Hardening(..) => {
                     yielding(&parameter.term, &loaded, &self.sequence, &self.encoders)
-                        .map(|part| self.read(&here, &loaded, &self.grown(part, parameters, values)))
+                        .map(|part| self.read(&here, &loaded, &part.grown(&growths)))
                 }
                 Term::Reading(of) => Some(self.read_directly(&**of)),
                 Term::Gain(_) | Term::Creep(_) => {
@@ -346,22 +346,22 @@ impl Observation for Displacement<'_> {
                     grown_by(&parameter.term, &self.sequence, &mut |of| self.each(of))
                         .map(|shares| self.read(&here, &loaded, &whole.shared_by(&shares)))
                 }
+                // All turns about the axis of a joint go with that of its zero.
+                Term::Aside(joint, 2, of) => {
+                    let unit: &mut DVector<f64> = asides.entry(*joint).or_insert_with(|| {
+                        let one = Parameter { term: Term::Aside(*joint, 2, Rc::new(|_| 1.0)), ..parameter.clone() };
+                        let with_it = (&*[parameters, &[one]].concat(), &*[values, &[0.0]].concat());
+                        self.slope(world, with_it, parameters.len())
+                    });
+                    let mut column = unit.clone();
+                    column.as_mut_slice().chunks_mut(self.readings.width).enumerate().for_each(|(row, numbers)| {
+                        let share = of(&self.at(row));
+                        numbers.iter_mut().for_each(|number| *number *= share);
+                    });
+                    Some(column)
+                }
                 Term::Aside(..) | Term::Asides(_) | Term::Table(..) | Term::World(_) => None,
             };
-            // All turns about the axis of a joint go with that of its zero.
-            if let Term::Aside(joint, 2, of) = &parameter.term {
-                let unit = asides.entry(*joint).or_insert_with(|| {
-                    let one = Parameter { term: Term::Aside(*joint, 2, Rc::new(|_| 1.0)), ..parameter.clone() };
-                    self.slope(world, (&[parameters, &[one]].concat(), &[values, &[0.0]].concat()), parameters.len())
-                });
-                let mut column = unit.clone();
-                column.as_mut_slice().chunks_mut(self.readings.width).enumerate().for_each(|(row, numbers)| {
-                    let share = of(&self.at(row));
-                    numbers.iter_mut().for_each(|number| *number *= share);
-                });
-                columns.set_column(k, &column);
-                continue;
-            }
             let column = column.unwrap_or_else(|| self.slope(world, (parameters, values), which));
             columns.set_column(k, &column);
         }

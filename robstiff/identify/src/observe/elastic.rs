@@ -6,7 +6,7 @@ use nalgebra::{DVector, Vector3, Vector6};
 use robstiff::JointKind;
 
 use crate::model::law::shares_since;
-use crate::model::{EachRow, Parameter, Stand, Term, Torques};
+use crate::model::{EachRow, Parameter, Spring, Stand, Term, Torques};
 
 /// An arm that stands somewhere at each row, under a load.
 #[derive(Clone, Debug)]
@@ -96,6 +96,13 @@ impl Yielding {
         }
     }
 
+    /// With what grows of it.
+    pub fn grown(mut self, growths: &[(Shares, f64)]) -> Self {
+        let more: Vec<Self> = growths.iter().map(|(shares, _)| self.shared_by(shares)).collect();
+        more.iter().zip(growths).for_each(|(part, (_, value))| self.add(part, *value));
+        self
+    }
+
     /// The sum of what rows have, each by its share.
     pub fn shared_by(&self, shares: &Shares) -> Self {
         let twist = |of: &Vec<(usize, f64)>| of.iter().map(|(row, share)| self.twists[*row] * *share).sum();
@@ -110,10 +117,12 @@ impl Yielding {
 /// the joints (from 1) whose turn is read.
 pub fn yielding(term: &Term, loaded: &Loaded, sequence: &Sequence, encoders: &[usize]) -> Option<Yielding> {
     let rows = loaded.wrenches.len();
+    // The rows of a station share where a spring is.
+    let parts_of =
+        |spring: &Spring| -> Vec<_> { loaded.stands.iter().map(|stand| spring.parts(stand, &loaded.kinds)).collect() };
     match term {
         Term::Spring(spring) => {
-            // The rows of a station share where the spring is.
-            let parts: Vec<_> = loaded.stands.iter().map(|stand| spring.parts(stand, &loaded.kinds)).collect();
+            let parts = parts_of(spring);
             let twist = |(&at, wrench): (&usize, &Vector6<f64>)| parts[at].iter().map(|part| part.twist(wrench)).sum();
             let twists = loaded.station.iter().zip(&loaded.wrenches).map(twist).collect();
             let turn = |&joint: &usize| -> Vec<f64> {
@@ -122,7 +131,7 @@ pub fn yielding(term: &Term, loaded: &Loaded, sequence: &Sequence, encoders: &[u
             Some(Yielding { twists, turns: encoders.iter().map(turn).collect() })
         }
         Term::Hardening(spring, knee) => {
-            let parts: Vec<_> = loaded.stands.iter().map(|stand| spring.parts(stand, &loaded.kinds)).collect();
+            let parts = parts_of(spring);
             let on_it = |(&at, wrench): (&usize, &Vector6<f64>)| {
                 parts[at].iter().map(|part| part.by.dot(wrench).powi(2)).sum::<f64>().sqrt()
             };
@@ -161,7 +170,7 @@ pub fn yielding(term: &Term, loaded: &Loaded, sequence: &Sequence, encoders: &[u
     }
 }
 
-/// How far the arm yields with all parameters at these values, but for what [grows](grown_by) of it.
+/// How far the arm yields with all parameters at these values, but for what [grows](growths) of it.
 pub fn sum(
     parameters: &[Parameter],
     values: &[f64],
@@ -193,24 +202,15 @@ pub fn grown_by(term: &Term, sequence: &Sequence, each: &mut EachRow<'_>) -> Opt
     }
 }
 
-/// What the arm yields in all, given what it yields but for what grows of it.
-pub fn grown(
-    mut yielding: Yielding,
+/// What all parameters make of what the arm yields anyway, each with its value; nothing where none does.
+pub fn growths(
     parameters: &[Parameter],
     values: &[f64],
     sequence: &Sequence,
     each: &mut EachRow<'_>,
-) -> Yielding {
+) -> Vec<(Shares, f64)> {
     let own = parameters.iter().zip(values).filter(|(_, value)| **value != 0.0);
-    let more: Vec<Yielding> = own
-        .filter_map(|(parameter, value)| {
-            let mut part = Yielding::none(yielding.twists.len(), yielding.turns.len());
-            part.add(&yielding.shared_by(&grown_by(&parameter.term, sequence, each)?), *value);
-            Some(part)
-        })
-        .collect();
-    more.iter().for_each(|part| yielding.add(part, 1.0));
-    yielding
+    own.filter_map(|(parameter, value)| Some((grown_by(&parameter.term, sequence, each)?, *value))).collect()
 }
 
 /// By how much each joint stands aside at each station, as rotation vectors in its own frame; empty
